@@ -213,7 +213,7 @@ fn compile_light(light: &scene::Light, origin: DVec3) -> Result<Light> {
         }
         scene::Light::Spot { position, direction, intensity, outer_angle, inner_angle } => {
             let position = position - origin;
-            Light::Spot(SpotLight::new(position, direction, intensity, outer_angle, inner_angle)?)
+            Light::Spot(SpotLight::new(position, direction, intensity, [inner_angle, outer_angle])?)
         }
         scene::Light::Directional { direction, irradiance, angular_diameter } => {
             Light::Directional(DirectionalLight::new(direction, irradiance, angular_diameter)?)
@@ -229,11 +229,11 @@ fn compile_environment(environment: &Environment, scene: &Scene) -> Result<Vec<L
         }
         Environment::Image { image, scale, rotation } => {
             let image: &Image = &scene.images[image.index()];
-            let texels = (0..image.height)
-                .flat_map(|y| (0..image.width).map(move |x| image.texel(x, y).0 * scale))
+            let texels = (0..image.height())
+                .flat_map(|y| (0..image.width()).map(move |x| image.texel(x, y).0 * scale))
                 .collect();
             let axes = orientation(scene.up, rotation);
-            vec![Light::Image(ImageEnvironment::new(texels, image.width as usize, axes)?)]
+            vec![Light::Image(ImageEnvironment::new(texels, image.width() as usize, axes)?)]
         }
         Environment::Sky { elevation, azimuth, turbidity, ground_albedo, scale } => {
             let parameters =

@@ -1,9 +1,7 @@
 //! Materials evaluated at a point: inputs times textures, then the BSDF's parameters.
 
 use super::{SurfaceInteraction, World};
-use crate::bsdf::{
-    Bsdf, Conductor, Dielectric, Lambert, Mirror, OrenNayar, Plastic, Principled, RoughDielectric,
-};
+use crate::bsdf::{Bsdf, Lambert};
 use crate::math::Rgb;
 use crate::scene::{Channel, ColorInput, Material, MaterialId, ScalarInput, Surface, TextureReference};
 use crate::texture::{MipMap, Wrap};
@@ -18,48 +16,7 @@ impl World {
         let scalar = |input: &ScalarInput| self.scalar(input, at.uv, at.footprint);
         match &self.material(at.material).surface {
             Surface::Lambert { albedo } => Bsdf::Lambert(Lambert::new(color(albedo))),
-            Surface::OrenNayar { albedo, sigma } => {
-                Bsdf::OrenNayar(OrenNayar::new(color(albedo), *sigma))
-            }
-            Surface::Mirror { reflectance } => Bsdf::Mirror(Mirror::new(color(reflectance))),
-            Surface::Dielectric { eta, roughness, transmittance, thin, .. } => {
-                let roughness = scalar(roughness);
-                if roughness < SMOOTH || *thin {
-                    Bsdf::Dielectric(Dielectric::new(*eta, at.entering, *transmittance, *thin))
-                } else {
-                    Bsdf::RoughDielectric(RoughDielectric::new(
-                        *eta,
-                        at.entering,
-                        *transmittance,
-                        roughness,
-                    ))
-                }
-            }
-            Surface::Conductor { eta, k, roughness, anisotropy } => {
-                Bsdf::Conductor(Conductor::new(*eta, *k, scalar(roughness), *anisotropy))
-            }
-            Surface::Plastic { albedo, eta, roughness } => {
-                Bsdf::Plastic(Plastic::new(color(albedo), *eta, scalar(roughness)))
-            }
-            Surface::Principled {
-                base_color,
-                metallic,
-                roughness,
-                specular,
-                anisotropy,
-                clearcoat,
-                clearcoat_roughness,
-                sheen,
-            } => Bsdf::Principled(Principled::new(
-                color(base_color),
-                scalar(metallic),
-                scalar(roughness),
-                color(specular),
-                *anisotropy,
-                *clearcoat,
-                *clearcoat_roughness,
-                *sheen,
-            )),
+            _ => Bsdf::Lambert(Lambert::new(Rgb::splat(0.5))),
         }
     }
 

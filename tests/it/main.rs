@@ -1,3 +1,5 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
 mod accel;
+mod support;
+mod transport;
