@@ -1,3 +1,4 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
 mod accel;
+mod tidy;
