@@ -2,4 +2,5 @@
 
 mod accel;
 mod support;
+mod tidy;
 mod transport;
