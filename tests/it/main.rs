@@ -1,1 +1,5 @@
-//! One integration binary.
+//! The one integration binary: physics, statistics and rules of the house.
+
+mod accel;
+mod support;
+mod transport;
