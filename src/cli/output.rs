@@ -4,8 +4,8 @@ use super::select::Settings;
 use crate::error::{Error, Result};
 use crate::film::Pixels;
 use crate::image::{
-    Attribute, ExrImage, auto_exposure, check_writable, decode_srgb, develop,
-    write_exr, write_hdr, write_png,
+    Attribute, ExrImage, auto_exposure, check_writable, develop, srgb, write_exr, write_hdr,
+    write_png,
 };
 use crate::math::Rgb;
 use crate::render::{Aov, Layers};
@@ -111,14 +111,19 @@ fn exr(picture: &Picture<'_>) -> ExrImage {
         let name = Aov::ALL.iter().find(|(_, a)| *a == aov).map_or("", |(name, _)| name);
         match aov {
             Aov::Variance => {
-                image.add_layer(name, ["R", "G", "B"], pixels.variance.iter().map(|v| v.to_array()));
+                image.add_layer(
+                    name,
+                    ["R", "G", "B"],
+                    pixels.variance.iter().map(|v| v.to_array()),
+                );
             }
             Aov::Samples => {
                 let samples = picture.samples;
                 image.add_layer(name, ["N"], pixels.alpha.iter().map(|_| [samples]));
             }
             _ => {
-                let channels = picture.layers.map(|layers| layers.channels(aov)).unwrap_or_default();
+                let channels =
+                    picture.layers.map(|layers| layers.channels(aov)).unwrap_or_default();
                 for (channel, samples) in channels {
                     image.channels.insert(format!("{name}.{channel}"), samples);
                 }
@@ -135,9 +140,9 @@ fn composite(bytes: &mut [[u8; 3]], alpha: &[f32], background: Rgb) {
     for (pixel, alpha) in bytes.iter_mut().zip(alpha) {
         for (channel, behind) in pixel.iter_mut().zip(background.to_array()) {
             // The radiance is already multiplied by its coverage.
-            let front = decode_srgb(f32::from(*channel) / 255.0);
-            let both = front + (1.0 - alpha) * decode_srgb(behind.min(1.0));
-            *channel = crate::image::encode_srgb8(both);
+            let front = srgb::decode(f32::from(*channel) / 255.0);
+            let both = front + (1.0 - alpha) * srgb::decode(behind.min(1.0));
+            *channel = srgb::encode8(both);
         }
     }
 }

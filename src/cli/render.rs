@@ -51,7 +51,8 @@ pub(super) fn run(args: &Render) -> Result<u8> {
             let embree = EmbreeAccelerator::build(world.geometry.clone(), args.threads)?;
             phases.build = start.elapsed().as_secs_f64();
             let name = ("embree", embree.version());
-            let job = Job { args, settings: &settings, outputs: &outputs, stop: &stop, name, inputs };
+            let job =
+                Job { args, settings: &settings, outputs: &outputs, stop: &stop, name, inputs };
             finish(&job, &world, &embree, &camera, phases)
         }
     }

@@ -8,7 +8,8 @@ use super::render::Job;
 use super::select::Settings;
 use crate::accel::BuildStats;
 use crate::error::{Error, Result, Warning};
-use crate::film::Film;
+use crate::film::{Film, Region};
+use crate::geometry::PrimitiveId;
 use crate::image::{Attribute, write_whole};
 use crate::ledger::{Ledger, Stage};
 use crate::math::DVec3;
@@ -322,7 +323,10 @@ pub(super) fn metadata(
         ("glint.fingerprint", text(job.inputs.clone())),
         ("glint.size", text(format!("{width}x{height}"))),
         ("glint.region", text(format!("{},{},{},{}", start[0], start[1], end[0], end[1]))),
-        ("glint.samples", text(if low == high { low.to_string() } else { format!("{low}..{high}") })),
+        (
+            "glint.samples",
+            text(if low == high { low.to_string() } else { format!("{low}..{high}") }),
+        ),
         ("glint.seed", text(settings.seed.to_string())),
         ("glint.settings", text(format!("{settings:?}"))),
         ("glint.origin", text(format!("{},{},{}", origin.x, origin.y, origin.z))),
@@ -355,6 +359,3 @@ pub(super) fn replayed(job: &Job<'_>, world: &World, found: &[PixelSample]) {
         );
     }
 }
-
-use crate::film::Region;
-use crate::geometry::PrimitiveId;

@@ -10,7 +10,9 @@ use crate::load;
 use crate::math::{DVec3, Rgb};
 use crate::render::Aov;
 use crate::sampling::SamplerKind;
-use crate::scene::{self, ColorInput, Environment, Material, MaterialId, Projection, Scene, Surface};
+use crate::scene::{
+    self, ColorInput, Environment, Material, MaterialId, Projection, Scene, Surface,
+};
 use crate::world::World;
 use std::path::Path;
 
@@ -164,7 +166,8 @@ pub(super) fn camera(
     }
     if let Some(fov) = args.fov {
         match &mut camera.projection {
-            Projection::Perspective { vertical_fov } | Projection::ThinLens { vertical_fov, .. } => {
+            Projection::Perspective { vertical_fov }
+            | Projection::ThinLens { vertical_fov, .. } => {
                 *vertical_fov = fov;
             }
             Projection::Orthographic { .. } | Projection::Panoramic => {

@@ -11,7 +11,7 @@ mod tonemap;
 mod write;
 
 pub use self::exr::{Attribute, ExrImage, Samples, read_exr_channels, write_exr};
-pub use atomic::write_whole;
+pub use atomic::{check_writable, write_whole};
 pub use read::{ColorSpace, MAX_BYTES, MAX_SIDE, read};
 pub use tonemap::{ToneMap, auto_exposure, develop};
 pub use write::{write_hdr, write_png};
