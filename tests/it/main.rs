@@ -1,6 +1,8 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
 mod accel;
+mod filter;
+mod image;
 mod support;
 mod tidy;
 mod transport;
