@@ -11,6 +11,7 @@ pub mod error;
 pub mod math;
 pub mod sampling;
 pub mod image;
+pub mod ledger;
 
 // Models: pure types and functions that know no scene.
 pub mod geometry;
