@@ -4,7 +4,7 @@
 //! the mean over the first samples.
 
 use super::thread_pool;
-use crate::accel::{AcceptAll, Accelerator, HitFilter};
+use crate::accel::{Accelerator, AcceptAll, HitFilter};
 use crate::error::Result;
 use crate::film::Region;
 use crate::geometry::NONE;

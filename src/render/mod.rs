@@ -10,7 +10,7 @@ mod non_finite;
 pub use layers::{Aov, Layers, render_layers};
 pub use non_finite::{NonFinite, NonFiniteSample};
 
-use crate::accel::{AcceptAll, Accelerator, HitFilter};
+use crate::accel::{Accelerator, AcceptAll, HitFilter};
 use crate::error::{Error, Result};
 use crate::film::{Film, Region};
 use crate::ledger::Ledger;
@@ -132,9 +132,12 @@ fn blocks(job: &RenderJob<'_>) -> Vec<Block> {
         // 1, 1, 2, 4, ... 32, 32, ...: a whole picture at once, then ever better ones.
         let size = first_sample.clamp(1, LARGEST_PASS);
         let end_sample = (first_sample + size).min(job.samples_per_pixel);
-        blocks.extend(
-            tiles.iter().map(|t| Block { start: t.start, end: t.end, first_sample, end_sample }),
-        );
+        blocks.extend(tiles.iter().map(|t| Block {
+            start: t.start,
+            end: t.end,
+            first_sample,
+            end_sample,
+        }));
         first_sample = end_sample;
     }
     blocks

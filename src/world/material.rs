@@ -3,7 +3,9 @@
 use super::{SurfaceInteraction, World};
 use crate::bsdf::{Bsdf, Lambert};
 use crate::math::Rgb;
-use crate::scene::{Channel, ColorInput, Material, MaterialId, ScalarInput, Surface, TextureReference};
+use crate::scene::{
+    Channel, ColorInput, Material, MaterialId, ScalarInput, Surface, TextureReference,
+};
 use crate::texture::{MipMap, Wrap};
 
 /// Below this roughness a dielectric is smooth: the highlight is narrower than any light or pixel.

@@ -85,8 +85,9 @@ impl World {
             scene.environment = Some(DEFAULT_SKY);
             warnings.push(Warning {
                 location: None,
-                message: "the scene has no light of its own: lit by a clear sky (set one with --env)"
-                    .into(),
+                message:
+                    "the scene has no light of its own: lit by a clear sky (set one with --env)"
+                        .into(),
             });
         }
         world.lights = Lights::compile(&world, &scene)?;

@@ -72,7 +72,14 @@ impl Builder {
     }
 
     /// A closed sphere of 2 n (n - 1) triangles, winding outward, with smooth normals if asked for.
-    pub(crate) fn sphere(&mut self, center: [f32; 3], radius: f32, n: u32, smooth: bool, m: MaterialId) {
+    pub(crate) fn sphere(
+        &mut self,
+        center: [f32; 3],
+        radius: f32,
+        n: u32,
+        smooth: bool,
+        m: MaterialId,
+    ) {
         let mut mesh = sphere_mesh(radius, n, smooth, m);
         for p in &mut mesh.positions {
             (0..3).for_each(|k| p[k] += center[k]);
@@ -211,7 +218,11 @@ impl Shot {
 
     /// The same paths by the naive integrator.
     pub(crate) fn naive_samples(&self, world: &World) -> Vec<Rgb> {
-        fn all<F: HitFilter>(shot: &Shot, tracer: &Tracer<'_, EmbreeAccelerator>, f: &F) -> Vec<Rgb> {
+        fn all<F: HitFilter>(
+            shot: &Shot,
+            tracer: &Tracer<'_, EmbreeAccelerator>,
+            f: &F,
+        ) -> Vec<Rgb> {
             Region::full(shot.size)
                 .iter()
                 .flat_map(|p| (0..shot.spp).map(move |s| naive::radiance(tracer, f, p, s)))
