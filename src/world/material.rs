@@ -104,7 +104,7 @@ pub(super) fn wrap_of(texture: &TextureReference) -> Wrap {
 /// that its triangles need no filter.
 pub(super) fn drop_alpha_of_opaque_images(material: &mut Material, textures: &[MipMap]) {
     if let Some((texture, Channel::Alpha)) = material.opacity.texture {
-        if !textures[texture.image.index()].has_alpha() {
+        if !textures[texture.image.index()].image().has_alpha() {
             material.opacity.texture = None;
         }
     }

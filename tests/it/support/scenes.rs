@@ -173,7 +173,7 @@ impl Shot {
         let accelerator =
             EmbreeAccelerator::build(world.geometry.clone(), 2).expect("embree builds");
         let camera = self.camera(world);
-        let filter = FilterSampler::new(glint::filter::Filter::Box { radius: 0.5 });
+        let filter = FilterSampler::new(glint::filter::Filter::new(glint::filter::FilterKind::Box));
         f(&Tracer {
             world,
             accelerator: &accelerator,
