@@ -230,11 +230,12 @@ fn file_access(file: &Source) -> Violations {
 // Rule 8: nothing is left for later.
 
 /// Spelled so that this file keeps the rule.
-const LEFT_FOR_LATER: [&str; 4] = [
+const LEFT_FOR_LATER: [&str; 5] = [
     concat!("TO", "DO"),
     concat!("FIX", "ME"),
     concat!("to", "do!"),
     concat!("unimpl", "emented!"),
+    concat!("(to ", "be "),
 ];
 
 #[test]
