@@ -51,7 +51,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("main", "cli"),
 ];
 
-/// What unit tests may use of any module below their own.
+/// What the unit tests of every module may use besides.
 pub(super) const FOR_TESTS: &str = "error math sampling";
 
 /// The modules that `module` may use.
@@ -62,7 +62,7 @@ pub(super) fn allowed(module: &str) -> Option<impl Iterator<Item = &'static str>
 /// A path in a file that leads out of its own module.
 #[derive(Debug, PartialEq)]
 pub(super) struct Use {
-    /// The first name after the crate's root: a module, `*` for all of them.
+    /// The first name after the crate's root: a module, `*` for all of them, `crate` for a new name of it.
     pub(super) name: String,
     pub(super) line: usize,
     pub(super) in_test: bool,
@@ -73,12 +73,14 @@ pub(super) struct Use {
 pub(super) fn uses(file: &Source) -> Vec<Use> {
     let mut uses = Vec::new();
     for (i, token) in file.tokens.iter().enumerate() {
-        if file.before(i) == "::" || file.token(i + 1) != "::" {
+        let renames_root = file.at(i, &["crate", "as"]);
+        if file.before(i) == "::" || file.token(i + 1) != "::" && !renames_root {
             continue;
         }
         let depth = file.depth() + token.inline_modules;
         // Climb towards the root; the rest of the path begins at `next`.
         let (climbed, next) = match token.text.as_str() {
+            "crate" if renames_root => (depth, i),
             "crate" => (depth, i + 2),
             "glint" if file.module() == "main" => (depth, i + 2),
             "self" | "super" => {

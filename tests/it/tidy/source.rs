@@ -38,12 +38,12 @@ impl Source {
         while let Some(folder) = folders.pop() {
             // A folder that does not exist holds nothing.
             for entry in std::fs::read_dir(folder).into_iter().flatten() {
-                let path = entry.unwrap().path();
+                let path = entry.expect("a folder of sources is readable").path();
                 if path.is_dir() {
                     folders.push(path);
                 } else if path.extension().is_some_and(|e| e == "rs") {
-                    let relative = path.strip_prefix(root).unwrap().to_str().unwrap();
-                    let text = std::fs::read_to_string(&path).unwrap();
+                    let relative = path.strip_prefix(root).unwrap_or(&path).to_string_lossy();
+                    let text = std::fs::read_to_string(&path).expect("sources are UTF-8");
                     sources.push(Self::new(relative.replace('\\', "/"), text));
                 }
             }
