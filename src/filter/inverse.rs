@@ -60,7 +60,7 @@ mod tests {
     #[test]
     fn inverts_like_bisection() {
         let peak = |i: usize| if i == 700 { 1e6 } else { 1e-3 };
-        let gaps = |i: usize| if i / 100 % 2 == 0 { i as f64 } else { 0.0 };
+        let gaps = |i: usize| if (i / 100).is_multiple_of(2) { i as f64 } else { 0.0 };
         for values in [vec![0.0; 64], (0..1000).map(peak).collect(), (0..1024).map(gaps).collect()]
         {
             let table = InverseTable::new(&values);
