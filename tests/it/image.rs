@@ -432,6 +432,12 @@ fn devices_and_folders_are_not_overwritten_and_links_are_followed() {
     fs::write(&real, "old").unwrap();
     std::os::unix::fs::symlink(&real, &link).unwrap();
     write(&link).unwrap();
+    write(&dir.path().join("new.png")).unwrap();
     assert!(link.is_symlink());
     assert_eq!(read(&real, ColorSpace::Srgb).unwrap().width(), 1);
+    // A new file has the mode that any program would give it.
+    let mode = |path: &Path| {
+        std::os::unix::fs::PermissionsExt::mode(&path.metadata().unwrap().permissions())
+    };
+    assert_eq!(mode(&dir.path().join("new.png")), mode(&real));
 }
