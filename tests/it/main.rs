@@ -1,8 +1,9 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
 mod accel;
+mod closed_forms;
+mod determinism;
 mod filter;
 mod image;
 mod support;
 mod tidy;
-mod transport;

@@ -1,3 +1,4 @@
-//! What the tests share: scenes built in code, and ways to render them.
+//! What the tests share: scenes built in code, ways to render them, and the test for means.
 
 pub(crate) mod scenes;
+pub(crate) mod z_test;
