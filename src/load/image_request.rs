@@ -7,14 +7,7 @@ use crate::scene::ImageId;
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-/// How the numbers of an image are to be understood.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ColorSpace {
-    /// Colours, encoded with the sRGB transfer function.
-    Srgb,
-    /// Numbers as they are: heights, normals, roughness, opacity.
-    Linear,
-}
+pub use crate::image::ColorSpace;
 
 /// An image that some material needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
