@@ -5,5 +5,8 @@ mod closed_forms;
 mod determinism;
 mod filter;
 mod image;
+mod load_mutations;
+mod mtl;
+mod obj;
 mod support;
 mod tidy;
