@@ -1,0 +1,215 @@
+//! `[[light.KIND]]` and `[environment.KIND]`: light that does not come from surfaces.
+
+use super::source::{Source, exactly_one};
+use super::texture::Textures;
+use super::value::{
+    Color, ConeAngle, Degrees, Direction, Elevation, Factor, Fraction, NonNegative, Point,
+    Turbidity,
+};
+use crate::error::Result;
+use crate::load::ColorSpace;
+use crate::math::Rgb;
+use crate::scene::{Environment, Light};
+use serde::Deserialize;
+use toml::Spanned;
+
+/// `[light]`: lists by kind.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct LightTables {
+    point: Vec<PointLight>,
+    spot: Vec<Spot>,
+    directional: Vec<Directional>,
+}
+
+/// `[[light.point]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PointLight {
+    position: Point,
+    intensity: Color<NonNegative>,
+}
+
+/// `[[light.spot]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Spot {
+    position: Point,
+    direction: Direction,
+    intensity: Color<NonNegative>,
+    outer_angle: ConeAngle,
+    inner_angle: Spanned<ConeAngle>,
+}
+
+/// `[[light.directional]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Directional {
+    direction: Direction,
+    irradiance: Color<NonNegative>,
+    #[serde(default = "point_like")]
+    angular_diameter: ConeAngle,
+}
+
+/// `[environment]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EnvironmentTable {
+    constant: Option<Constant>,
+    image: Option<ImageTable>,
+    sky: Option<Sky>,
+}
+
+/// `[environment.constant]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Constant {
+    radiance: Color<NonNegative>,
+}
+
+/// `[environment.image]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ImageTable {
+    file: Spanned<String>,
+    #[serde(default = "one")]
+    scale: Color<NonNegative>,
+    #[serde(default = "unturned")]
+    rotation: Degrees,
+}
+
+/// `[environment.sky]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Sky {
+    elevation: Elevation,
+    azimuth: Degrees,
+    #[serde(default = "clear_day")]
+    turbidity: Turbidity,
+    #[serde(default = "dark_ground")]
+    ground_albedo: Color<Fraction>,
+    #[serde(default = "unscaled")]
+    scale: Factor,
+}
+
+const fn point_like() -> ConeAngle {
+    ConeAngle(0.0)
+}
+
+const fn one() -> Color<NonNegative> {
+    Color::new(Rgb::WHITE)
+}
+
+const fn unturned() -> Degrees {
+    Degrees(0.0)
+}
+
+const fn clear_day() -> Turbidity {
+    Turbidity(3.0)
+}
+
+const fn dark_ground() -> Color<Fraction> {
+    Color::new(Rgb::splat(0.2))
+}
+
+const fn unscaled() -> Factor {
+    Factor(1.0)
+}
+
+impl LightTables {
+    /// The lights for `scene`: points, then spots, then directional ones, each in the order of the file.
+    ///
+    /// # Errors
+    /// For a spot whose inner cone is wider than its outer one.
+    pub(super) fn lights(&self, source: Source) -> Result<Vec<Light>> {
+        let points = self.point.iter().map(|light| Ok(light.light()));
+        let spots = self.spot.iter().map(|light| light.light(source));
+        let directional = self.directional.iter().map(|light| Ok(light.light()));
+        points.chain(spots).chain(directional).collect()
+    }
+}
+
+impl PointLight {
+    fn light(&self) -> Light {
+        Light::Point { position: self.position.vector(), intensity: self.intensity.rgb }
+    }
+}
+
+impl Spot {
+    fn light(&self, source: Source) -> Result<Light> {
+        let [outer_angle, inner_angle] =
+            [self.outer_angle, *self.inner_angle.get_ref()].map(|a| a.0);
+        if inner_angle > outer_angle {
+            let message = format!(
+                "`inner_angle` {inner_angle} is larger than `outer_angle` {outer_angle}: swap them"
+            );
+            return Err(source.error(self.inner_angle.span(), message));
+        }
+        Ok(Light::Spot {
+            position: self.position.vector(),
+            direction: self.direction.0,
+            intensity: self.intensity.rgb,
+            outer_angle,
+            inner_angle,
+        })
+    }
+}
+
+impl Directional {
+    fn light(&self) -> Light {
+        Light::Directional {
+            direction: self.direction.0,
+            irradiance: self.irradiance.rgb,
+            angular_diameter: self.angular_diameter.0,
+        }
+    }
+}
+
+impl EnvironmentTable {
+    /// The environment for `scene`; asks `to` for its image.
+    ///
+    /// # Errors
+    /// When there is not exactly one kind.
+    pub(super) fn environment(
+        &self,
+        span: std::ops::Range<usize>,
+        to: &mut Textures,
+    ) -> Result<Environment> {
+        exactly_one([
+            ("constant", self.constant.as_ref().map(Constant::environment)),
+            ("image", self.image.as_ref().map(|image| image.environment(to))),
+            ("sky", self.sky.as_ref().map(Sky::environment)),
+        ])
+        .map_err(|message| to.source.error(span, format!("`environment` {message}")))
+    }
+}
+
+impl Constant {
+    fn environment(&self) -> Environment {
+        Environment::Constant { radiance: self.radiance.rgb }
+    }
+}
+
+impl ImageTable {
+    fn environment(&self, to: &mut Textures) -> Environment {
+        let path = to.source.resolve(self.file.get_ref());
+        let location = to.source.location(&self.file.span());
+        Environment::Image {
+            image: to.images.request(path, ColorSpace::Srgb, location),
+            scale: self.scale.rgb,
+            rotation: self.rotation.0,
+        }
+    }
+}
+
+impl Sky {
+    fn environment(&self) -> Environment {
+        Environment::Sky {
+            elevation: self.elevation.0,
+            azimuth: self.azimuth.0,
+            turbidity: self.turbidity.0,
+            ground_albedo: self.ground_albedo.rgb,
+            scale: self.scale.0,
+        }
+    }
+}
