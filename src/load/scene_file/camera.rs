@@ -1,7 +1,7 @@
 //! `[camera.NAME]`: where a camera stands and how it projects (one table named after the kind).
 
 use super::source::{Source, exactly_one};
-use super::value::{FieldOfView, Length, Point};
+use super::value::{FieldOfView, Length, Point, Radius};
 use crate::error::Result;
 use crate::math::DVec3;
 use crate::scene::{Camera, Projection};
@@ -34,7 +34,7 @@ pub(super) struct Perspective {
 #[serde(deny_unknown_fields)]
 pub(super) struct ThinLens {
     vertical_fov: FieldOfView,
-    lens_radius: Length,
+    lens_radius: Radius,
     /// Said nothing: the distance from `from` to `to`.
     focus_distance: Option<Length>,
 }
@@ -70,8 +70,9 @@ impl CameraTable {
         if view == DVec3::ZERO {
             return Err(complain("looks at its own position: move `from` or `to`"));
         }
-        // The sine of the angle between them, where a picture would have no upright: 1e-9.
-        if !(view.cross(up).length() > 1e-9 * view.length() * up.length()) {
+        // The sine of the angle between view and up: below a millionth, the roll is not defined.
+        let sine = view.normalize_or_zero().cross(up.normalize_or_zero()).length();
+        if sine < 1e-6 {
             return Err(complain("has an `up` along its view: choose another `up`"));
         }
         let projection = exactly_one([

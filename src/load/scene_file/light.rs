@@ -3,8 +3,8 @@
 use super::source::{Source, exactly_one};
 use super::texture::Textures;
 use super::value::{
-    Color, ConeAngle, Degrees, Direction, Elevation, Factor, Fraction, NonNegative, Point,
-    Turbidity,
+    Color, ConeAngle, Degrees, Direction, Elevation, Factor, Fraction, NonNegative, OuterAngle,
+    Point, Turbidity,
 };
 use crate::error::Result;
 use crate::load::ColorSpace;
@@ -37,7 +37,7 @@ pub(super) struct Spot {
     position: Point,
     direction: Direction,
     intensity: Color<NonNegative>,
-    outer_angle: ConeAngle,
+    outer_angle: OuterAngle,
     inner_angle: Spanned<ConeAngle>,
 }
 
@@ -137,8 +137,7 @@ impl PointLight {
 
 impl Spot {
     fn light(&self, source: Source) -> Result<Light> {
-        let [outer_angle, inner_angle] =
-            [self.outer_angle, *self.inner_angle.get_ref()].map(|a| a.0);
+        let (outer_angle, inner_angle) = (self.outer_angle.0, self.inner_angle.get_ref().0);
         if inner_angle > outer_angle {
             let message = format!(
                 "`inner_angle` {inner_angle} is larger than `outer_angle` {outer_angle}: swap them"

@@ -52,6 +52,8 @@
 mod assemble;
 mod builder;
 mod camera;
+#[cfg(test)]
+mod keys;
 mod light;
 mod material;
 mod named;

@@ -5,7 +5,8 @@
 
 use super::source::Source;
 use super::value::{Color, Finite, Fraction, List, Ranged};
-use crate::load::{ColorSpace, ImageTable};
+use crate::image::ColorSpace;
+use crate::load::ImageTable;
 use crate::math::Rgb;
 use crate::scene::{Channel, ColorInput, NormalInput, ScalarInput, TextureReference};
 use serde::Deserialize;

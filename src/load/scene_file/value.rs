@@ -55,7 +55,9 @@ ranged! {
     Fraction(f32): "a number from 0 to 1", |v| (0.0..=1.0).contains(&v);
     /// Anisotropy.
     SignedFraction(f32): "a number from -1 to 1", |v| (-1.0..=1.0).contains(&v);
-    /// A length in the scene: a radius, a distance.
+    /// A radius of a lens; 0 is a pinhole.
+    Radius(f64): "a length from 0 to 1e15", |v| (0.0..=1e15).contains(&v);
+    /// A length in the scene that cannot be 0: a distance, a height.
     Length(f64): "a length above 0 and up to 1e15", |v| v > 0.0 && v <= 1e15;
     /// One coordinate of a position: far beyond what `f64` resolves to a millimetre, far within `f32`.
     Coordinate(f64): "a coordinate from -1e15 to 1e15", |v| v.abs() <= 1e15;
@@ -65,7 +67,9 @@ ranged! {
     Degrees(f64): "a finite angle in degrees", |_| true;
     /// A field of view.
     FieldOfView(f64): "an angle above 0 and below 180 degrees", |v| v > 0.0 && v < 180.0;
-    /// A half-angle of a cone, or an angular diameter.
+    /// A half-angle of a cone within which there is light.
+    OuterAngle(f64): "an angle above 0 and up to 180 degrees", |v| v > 0.0 && v <= 180.0;
+    /// Another half-angle of a cone, or an angular diameter.
     ConeAngle(f64): "an angle from 0 to 180 degrees", |v| (0.0..=180.0).contains(&v);
     /// Of the sun.
     Elevation(f64): "an angle from -90 to 90 degrees", |v| (-90.0..=90.0).contains(&v);
