@@ -1,1 +1,4 @@
 //! One integration binary.
+
+mod scene_file;
+mod scene_file_errors;

@@ -10,8 +10,7 @@ use crate::error::Result;
 use crate::load;
 use crate::load::ImageTable;
 use crate::scene::{MaterialId, ModelId, Placement, Scene};
-use std::cell::Cell;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 use toml::Spanned;
 
@@ -23,7 +22,7 @@ use toml::Spanned;
 pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
     // What the document says by itself.
     let (placed, unplaced) = place::flatten(document, source)?;
-    let overrides = Overrides::new(document, source)?;
+    let mut overrides = Overrides::new(document, source)?;
     let mut builder = Builder::default();
     let scene = &mut builder.scene;
     scene.settings = settings::settings(&document.film, &document.render, source)?;
@@ -54,14 +53,15 @@ pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
                     return Err(source.error(file.span(), message));
                 }
                 let loaded = load::load_obj(&path)?;
-                let model = builder.add_model(loaded, |name| Some(library[overrides.get(name)?]));
+                let model =
+                    builder.add_model(loaded, |name| Some(library[overrides.replacement(name)?]));
                 *models.entry(path).or_insert(model)
             }
         };
         let material_override = material.map(|name| library[name]);
         builder.scene.placements.push(Placement { model, world_from_object, material_override });
     }
-    overrides.check_all_met(&builder.scene, source)?;
+    overrides.check_all_met(source)?;
     Ok(builder.finish())
 }
 
@@ -89,14 +89,9 @@ fn add_library<'d>(
 
 /// `[override]`: MTL material to material of the document.
 struct Overrides<'d> {
-    entries: Vec<Override<'d>>,
-}
-
-struct Override<'d> {
-    mtl_name: &'d Spanned<String>,
-    material: &'d str,
-    /// Whether a model has a material of this name.
-    met: Cell<bool>,
+    entries: Vec<(&'d Spanned<String>, &'d str)>,
+    /// Names of the MTL materials of all models.
+    mtl_names: BTreeSet<String>,
 }
 
 impl<'d> Overrides<'d> {
@@ -107,30 +102,32 @@ impl<'d> Overrides<'d> {
     fn new(document: &'d Document, source: Source) -> Result<Self> {
         let entry = |(mtl_name, material): &'d (Spanned<String>, Spanned<String>)| {
             document.check_material(material, source)?;
-            Ok(Override { mtl_name, material: material.get_ref(), met: Cell::new(false) })
+            Ok((mtl_name, material.get_ref().as_str()))
         };
-        Ok(Self { entries: document.overrides.iter().map(entry).collect::<Result<_>>()? })
+        let entries = document.overrides.iter().map(entry).collect::<Result<_>>()?;
+        Ok(Self { entries, mtl_names: BTreeSet::new() })
     }
 
     /// Names of the materials that replace others.
     fn materials(&self) -> impl Iterator<Item = &'d str> {
-        self.entries.iter().map(|entry| entry.material)
+        self.entries.iter().map(|entry| entry.1)
     }
 
-    /// The material that replaces the MTL material `name`, if any.
-    fn get(&self, name: &str) -> Option<&'d str> {
-        let entry = self.entries.iter().find(|entry| entry.mtl_name.get_ref() == name)?;
-        entry.met.set(true);
-        Some(entry.material)
+    /// The material that replaces `mtl_name`, a material of a model, if any does.
+    fn replacement(&mut self, mtl_name: &str) -> Option<&'d str> {
+        self.mtl_names.insert(mtl_name.to_owned());
+        self.entries.iter().find(|entry| entry.0.get_ref() == mtl_name).map(|entry| entry.1)
     }
 
     /// Complains about an override of a material that no model has.
-    fn check_all_met(&self, scene: &Scene, source: Source) -> Result<()> {
-        let Some(unmet) = self.entries.iter().find(|entry| !entry.met.get()) else {
-            return Ok(());
-        };
-        let known = scene.materials.iter().map(|material| material.name.as_str());
-        let name = unmet.mtl_name;
-        Err(source.unknown_name(name.span(), "MTL material", name.get_ref(), known))
+    fn check_all_met(&self, source: Source) -> Result<()> {
+        let unmet = |entry: &&(&Spanned<String>, _)| !self.mtl_names.contains(entry.0.get_ref());
+        match self.entries.iter().find(unmet) {
+            None => Ok(()),
+            Some((name, _)) => {
+                let known = self.mtl_names.iter().map(String::as_str);
+                Err(source.unknown_name(name.span(), "MTL material", name.get_ref(), known))
+            }
+        }
     }
 }

@@ -28,7 +28,7 @@ impl Builder {
     pub(super) fn add_model(
         &mut self,
         loaded: LoadedModel,
-        replacement: impl Fn(&str) -> Option<MaterialId>,
+        mut replacement: impl FnMut(&str) -> Option<MaterialId>,
     ) -> ModelId {
         // From the model's own ids to the scene's. Images of replaced materials are not asked for.
         let LoadedModel { mut model, materials, images, warnings, inputs } = loaded;
