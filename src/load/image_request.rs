@@ -3,18 +3,10 @@
 //! Nothing is decoded here: a request says what to decode and which line to blame when that fails.
 
 use crate::error::Location;
+use crate::image::ColorSpace;
 use crate::scene::ImageId;
 use std::collections::HashMap;
 use std::path::PathBuf;
-
-/// How the numbers of an image are to be understood.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ColorSpace {
-    /// Colours, encoded with the sRGB transfer function.
-    Srgb,
-    /// Numbers as they are: heights, normals, roughness, opacity.
-    Linear,
-}
 
 /// An image that some material needs.
 #[derive(Clone, Debug, PartialEq, Eq)]

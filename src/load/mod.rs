@@ -4,6 +4,7 @@
 //! every dropped part, or an error; never a panic. Images are asked for here ([`ImageRequest`]) and
 //! decoded elsewhere. Must not know how light is transported, only what the files mean.
 
+mod environment;
 mod image_request;
 mod line_filter;
 mod mtl;
@@ -16,8 +17,12 @@ mod obj_mesh;
 mod obj_polygon;
 mod obj_read;
 mod paths;
+mod scene_file;
 mod warning_list;
 
-pub use image_request::{ColorSpace, ImageRequest, ImageTable};
+pub use crate::image::ColorSpace;
+pub use environment::add_environment_image;
+pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;
 pub use obj::{LoadedModel, load_obj};
+pub use scene_file::{did_you_mean, load_scene};

@@ -1,4 +1,5 @@
 //! One integration binary.
+#![cfg(test)]
 
 mod scene_file;
 mod scene_file_errors;

@@ -1,14 +1,15 @@
 //! A parsed document becomes a [`Scene`]: its parts are checked, models are read, images decoded.
 
-use super::Document;
 use super::builder::Builder;
 use super::place::{self, PlacedFile};
 use super::settings;
 use super::source::Source;
 use super::texture::Textures;
+use super::{Document, Up};
 use crate::error::Result;
 use crate::load;
 use crate::load::ImageTable;
+use crate::math::DVec3;
 use crate::scene::{MaterialId, ModelId, Placement, Scene};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
@@ -17,8 +18,8 @@ use toml::Spanned;
 /// The scene that `document` describes.
 ///
 /// # Errors
-/// Everything in the document that contradicts itself (before any other file is read), and model files
-/// that cannot be read.
+/// Everything in the document that contradicts itself, and models and an environment image that cannot
+/// be read.
 pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
     // What the document says by itself.
     let (placed, unplaced) = place::flatten(document, source)?;
@@ -26,8 +27,11 @@ pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
     let mut builder = Builder::default();
     let scene = &mut builder.scene;
     scene.settings = settings::settings(&document.film, &document.render, source)?;
+    if document.up == Some(Up::Z) {
+        scene.up = DVec3::Z;
+    }
     for (name, camera) in document.camera.iter() {
-        scene.cameras.push(camera.camera(name, source)?);
+        scene.cameras.push(camera.camera(name, scene.up, source)?);
     }
     scene.lights = document.light.lights(source)?;
     scene.warnings.extend(unplaced.into_iter().map(|name| {
@@ -35,11 +39,6 @@ pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
     }));
     let used = placed.iter().filter_map(|file| file.material).chain(overrides.materials());
     let library = add_library(document, source, &used.collect(), &mut builder)?;
-    if let Some(environment) = &document.environment {
-        let mut textures = Textures { source, images: &mut builder.images };
-        let environment = environment.get_ref().environment(environment.span(), &mut textures)?;
-        builder.scene.environment = Some(environment);
-    }
 
     // Models, each file once.
     let mut models: HashMap<PathBuf, ModelId> = HashMap::new();
@@ -62,7 +61,13 @@ pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
         builder.scene.placements.push(Placement { model, world_from_object, material_override });
     }
     overrides.check_all_met(source)?;
-    Ok(builder.finish())
+
+    let mut scene = builder.finish();
+    if let Some(table) = &document.environment {
+        let environment = table.get_ref().environment(table.span(), source, &mut scene)?;
+        scene.environment = Some(environment);
+    }
+    Ok(scene)
 }
 
 /// Adds the materials of the document that are `used`, and checks the others too. Ids by name.

@@ -68,18 +68,13 @@ impl Builder {
         let read = |request: &ImageRequest| image::read(&request.path, request.color_space);
         let decoded: Vec<_> = requests.par_iter().map(read).collect();
         for (request, result) in requests.into_iter().zip(decoded) {
-            let image = match result {
-                Ok(image) => {
-                    scene.inputs.push(request.path);
-                    image
-                }
-                Err(error) => {
-                    let message = format!("{error}; a stand-in colour is shown instead");
-                    scene.warnings.push(Warning { location: Some(request.location), message });
-                    Image::missing()
-                }
-            };
+            let image = result.unwrap_or_else(|error| {
+                let message = format!("{error}; a stand-in colour is shown instead");
+                scene.warnings.push(Warning { location: Some(request.location), message });
+                Image::missing()
+            });
             scene.images.push(Arc::new(image));
+            scene.inputs.push(request.path);
         }
         scene
     }

@@ -14,8 +14,8 @@ use toml::Spanned;
 pub(super) struct CameraTable {
     from: Point,
     to: Point,
-    #[serde(default = "y_axis")]
-    up: Point,
+    /// Said nothing: the scene's.
+    up: Option<Point>,
     perspective: Option<Perspective>,
     thin_lens: Option<ThinLens>,
     orthographic: Option<Orthographic>,
@@ -51,21 +51,23 @@ pub(super) struct Orthographic {
 #[serde(deny_unknown_fields)]
 pub(super) struct Panoramic {}
 
-fn y_axis() -> Point {
-    Point::new(DVec3::Y)
-}
-
 impl CameraTable {
-    /// The camera for `scene`, called `name`.
+    /// The camera for `scene`, called `name`; `scene_up` is upward where it says nothing else.
     ///
     /// # Errors
     /// When it looks nowhere (`from` is `to`), when `up` is along the view, when there is not exactly one
     /// projection.
-    pub(super) fn camera(&self, name: &Spanned<String>, source: Source) -> Result<Camera> {
+    pub(super) fn camera(
+        &self,
+        name: &Spanned<String>,
+        scene_up: DVec3,
+        source: Source,
+    ) -> Result<Camera> {
         let complain = |message: &str| {
             source.error(name.span(), format!("camera `{}` {message}", name.get_ref()))
         };
-        let [from, to, up] = [self.from, self.to, self.up].map(Point::vector);
+        let [from, to] = [self.from, self.to].map(Point::vector);
+        let up = self.up.map_or(scene_up, Point::vector);
         let view = to - from;
         if view == DVec3::ZERO {
             return Err(complain("looks at its own position: move `from` or `to`"));

@@ -1,16 +1,16 @@
 //! `[[light.KIND]]` and `[environment.KIND]`: light that does not come from surfaces.
 
 use super::source::{Source, exactly_one};
-use super::texture::Textures;
 use super::value::{
     Color, ConeAngle, Degrees, Direction, Elevation, Factor, Fraction, NonNegative, OuterAngle,
     Point, Turbidity,
 };
 use crate::error::Result;
-use crate::load::ColorSpace;
+use crate::load;
 use crate::math::Rgb;
-use crate::scene::{Environment, Light};
+use crate::scene::{Environment, Light, Scene};
 use serde::Deserialize;
+use std::ops::Range;
 use toml::Spanned;
 
 /// `[light]`: lists by kind.
@@ -165,21 +165,22 @@ impl Directional {
 }
 
 impl EnvironmentTable {
-    /// The environment for `scene`; asks `to` for its image.
+    /// The environment for `scene`, to which its image is added.
     ///
     /// # Errors
-    /// When there is not exactly one kind.
+    /// When there is not exactly one kind, and when the image cannot be read.
     pub(super) fn environment(
         &self,
-        span: std::ops::Range<usize>,
-        to: &mut Textures,
+        span: Range<usize>,
+        source: Source,
+        scene: &mut Scene,
     ) -> Result<Environment> {
-        exactly_one([
-            ("constant", self.constant.as_ref().map(Constant::environment)),
-            ("image", self.image.as_ref().map(|image| image.environment(to))),
-            ("sky", self.sky.as_ref().map(Sky::environment)),
-        ])
-        .map_err(|message| to.source.error(span, format!("`environment` {message}")))
+        let kind = exactly_one([
+            ("constant", self.constant.as_ref().map(|table| Ok(table.environment()))),
+            ("image", self.image.as_ref().map(|table| table.environment(source, scene))),
+            ("sky", self.sky.as_ref().map(|table| Ok(table.environment()))),
+        ]);
+        kind.map_err(|message| source.error(span, format!("`environment` {message}")))?
     }
 }
 
@@ -190,14 +191,11 @@ impl Constant {
 }
 
 impl ImageTable {
-    fn environment(&self, to: &mut Textures) -> Environment {
-        let path = to.source.resolve(self.file.get_ref());
-        let location = to.source.location(&self.file.span());
-        Environment::Image {
-            image: to.images.request(path, ColorSpace::Srgb, location),
-            scale: self.scale.rgb,
-            rotation: self.rotation.0,
-        }
+    fn environment(&self, source: Source, scene: &mut Scene) -> Result<Environment> {
+        let path = source.resolve(self.file.get_ref());
+        let image = load::add_environment_image(scene, &path)
+            .map_err(|error| source.error(self.file.span(), error.to_string()))?;
+        Ok(Environment::Image { image, scale: self.scale.rgb, rotation: self.rotation.0 })
     }
 }
 

@@ -1,13 +1,15 @@
 //! `[material.NAME]`: how a surface scatters (one table named after the kind), what it emits, where it
 //! is cut out.
 
-use super::source::exactly_one;
+use super::source::{Source, exactly_one};
 use super::texture::{BumpMap, ColorSource, NormalMap, ScalarSource, Textures};
 use super::value::{Color, ConeAngle, Fraction, NonNegative, Positive, SignedFraction};
+use crate::bsdf::{METALS, Metal};
 use crate::error::Result;
 use crate::math::Rgb;
 use crate::scene::{ColorInput, Emission, Material, ScalarInput, Surface};
 use serde::Deserialize;
+use std::ops::Range;
 use toml::Spanned;
 
 /// `[material.NAME]`.
@@ -18,7 +20,7 @@ pub(super) struct MaterialTable {
     oren_nayar: Option<OrenNayar>,
     mirror: Option<Mirror>,
     dielectric: Option<Dielectric>,
-    conductor: Option<Conductor>,
+    conductor: Option<Spanned<Conductor>>,
     plastic: Option<Plastic>,
     principled: Option<Principled>,
     emission: Option<ColorSource<NonNegative>>,
@@ -187,7 +189,10 @@ impl MaterialTable {
             ("oren_nayar", self.oren_nayar.as_ref().map(|table| Ok(table.surface(to)))),
             ("mirror", self.mirror.as_ref().map(|table| Ok(table.surface(to)))),
             ("dielectric", self.dielectric.as_ref().map(|table| Ok(table.surface(to)))),
-            ("conductor", self.conductor.as_ref().map(|table| table.surface(to))),
+            (
+                "conductor",
+                self.conductor.as_ref().map(|table| table.get_ref().surface(table.span(), to)),
+            ),
             ("plastic", self.plastic.as_ref().map(|table| Ok(table.surface(to)))),
             ("principled", self.principled.as_ref().map(|table| Ok(table.surface(to)))),
         ];
@@ -230,8 +235,8 @@ impl Dielectric {
 }
 
 impl Conductor {
-    fn surface(&self, to: &mut Textures) -> Result<Surface> {
-        let (eta, k) = self.index_of_refraction(to)?;
+    fn surface(&self, span: Range<usize>, to: &mut Textures) -> Result<Surface> {
+        let (eta, k) = self.index_of_refraction(span, to.source)?;
         Ok(Surface::Conductor {
             eta,
             k,
@@ -241,9 +246,21 @@ impl Conductor {
     }
 
     /// (eta, k) of the named metal, or as given.
-    fn index_of_refraction(&self, to: &Textures) -> Result<(Rgb, Rgb)> {
-        let _ = (to, &self.metal);
-        Ok((Rgb::WHITE, Rgb::WHITE))
+    fn index_of_refraction(&self, span: Range<usize>, source: Source) -> Result<(Rgb, Rgb)> {
+        match (&self.metal, &self.eta, &self.k) {
+            (Some(name), None, None) => match Metal::by_name(name.get_ref()) {
+                Some(metal) => Ok((metal.eta, metal.k)),
+                None => {
+                    let known = METALS.iter().map(|metal| metal.name);
+                    Err(source.unknown_name(name.span(), "metal", name.get_ref(), known))
+                }
+            },
+            (None, Some(eta), Some(k)) => Ok((eta.rgb, k.rgb)),
+            _ => {
+                let message = "a conductor needs either the name of a `metal` or `eta` and `k`";
+                Err(source.error(span, message))
+            }
+        }
     }
 }
 

@@ -69,7 +69,7 @@ pub use source::did_you_mean;
 use crate::error::{Error, Result};
 use crate::load::load_obj;
 use crate::math::DAffine3;
-use crate::scene::{Camera, Placement, Scene};
+use crate::scene::{Placement, Scene};
 use builder::Builder;
 use named::Named;
 use serde::Deserialize;
@@ -81,6 +81,7 @@ use toml::Spanned;
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Document {
+    up: Option<Up>,
     film: settings::FilmTable,
     render: settings::RenderTable,
     camera: Named<camera::CameraTable>,
@@ -91,6 +92,14 @@ struct Document {
     overrides: Named<Spanned<String>>,
     light: light::LightTables,
     environment: Option<Spanned<light::EnvironmentTable>>,
+}
+
+/// `up = "y"` or `"z"`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Up {
+    Y,
+    Z,
 }
 
 impl Document {
@@ -149,15 +158,4 @@ fn load_model_alone(path: &Path) -> Result<Scene> {
     let world_from_object = DAffine3::IDENTITY;
     builder.scene.placements.push(Placement { model, world_from_object, material_override: None });
     Ok(builder.finish())
-}
-
-/// The camera of `scene` called `name`.
-///
-/// # Errors
-/// When there is none; the error lists those that there are.
-pub fn camera<'s>(scene: &'s Scene, name: &str) -> Result<&'s Camera> {
-    scene.cameras.iter().find(|camera| camera.name == name).ok_or_else(|| {
-        let names = scene.cameras.iter().map(|camera| camera.name.as_str());
-        Error::Usage(source::unknown("camera", name, names))
-    })
 }

@@ -3,6 +3,8 @@
 use super::source::Source;
 use super::value::{Count, Finite, List};
 use crate::error::Result;
+use crate::filter::Filter;
+use crate::image::ToneMap;
 use crate::sampling::SamplerKind;
 use crate::scene::SceneSettings;
 use serde::Deserialize;
@@ -13,9 +15,9 @@ use toml::Spanned;
 #[serde(deny_unknown_fields, default)]
 pub(super) struct FilmTable {
     size: Option<List<Count<65536>, 2>>,
-    filter: Option<String>,
+    filter: Option<Spanned<String>>,
     exposure: Option<Finite>,
-    tonemap: Option<String>,
+    tonemap: Option<Spanned<String>>,
 }
 
 /// `[render]`.
@@ -31,7 +33,7 @@ pub(super) struct RenderTable {
 /// The settings of both tables.
 ///
 /// # Errors
-/// For an unknown sampler.
+/// For an unknown filter, tone map or sampler.
 pub(super) fn settings(
     film: &FilmTable,
     render: &RenderTable,
@@ -43,14 +45,21 @@ pub(super) fn settings(
     {
         return Err(source.unknown_name(name.span(), "sampler", name.get_ref(), samplers));
     }
+    if let Some(name) = &film.filter {
+        Filter::parse(name.get_ref()).map_err(|e| source.error(name.span(), e.to_string()))?;
+    }
+    if let Some(name) = &film.tonemap {
+        ToneMap::parse(name.get_ref()).map_err(|e| source.error(name.span(), e.to_string()))?;
+    }
+    let text = |name: &Option<Spanned<String>>| name.as_ref().map(|name| name.get_ref().clone());
     Ok(SceneSettings {
         size: film.size.map(|size| size.0.map(|count| count.0 as u32)),
         samples_per_pixel: render.spp.map(|count| count.0),
         max_depth: render.max_depth.map(|count| count.0 as u32),
-        sampler: render.sampler.as_ref().map(|name| name.get_ref().clone()),
+        sampler: text(&render.sampler),
         seed: render.seed,
-        filter: film.filter.clone(),
+        filter: text(&film.filter),
         exposure: film.exposure.map(|stops| stops.0),
-        tonemap: film.tonemap.clone(),
+        tonemap: text(&film.tonemap),
     })
 }

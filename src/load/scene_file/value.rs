@@ -174,11 +174,6 @@ where
 pub(super) type Point = List<Coordinate, 3>;
 
 impl Point {
-    /// The point `v`, unchecked.
-    pub(super) fn new(v: DVec3) -> Self {
-        List(v.to_array().map(Coordinate))
-    }
-
     /// The point as a vector.
     pub(super) fn vector(self) -> DVec3 {
         DVec3::from_array(self.0.map(|v| v.0))
