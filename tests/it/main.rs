@@ -8,5 +8,7 @@ mod image;
 mod load_mutations;
 mod mtl;
 mod obj;
+mod scene_file;
+mod scene_file_errors;
 mod support;
 mod tidy;
