@@ -1,6 +1,7 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
 mod accel;
+mod cli;
 mod closed_forms;
 mod determinism;
 mod filter;
