@@ -95,6 +95,15 @@ impl Light {
         }
     }
 
+    /// [`Light::radiance`] and [`Light::pdf_solid_angle`], with their common part done once.
+    #[inline]
+    pub fn radiance_and_pdf(&self, direction: Vec3) -> (Rgb, f32) {
+        match self {
+            Self::Image(light) => light.radiance_and_pdf(direction),
+            light => (light.radiance(direction), light.pdf_solid_angle(direction)),
+        }
+    }
+
     /// Whether only light sampling can find this light.
     pub fn is_delta(&self) -> bool {
         match self {
