@@ -4,7 +4,7 @@
 //! scene, traces a ray or decides visibility. The variant files never import [`Light`].
 //!
 //! Emissive surfaces are not a variant: their radiance is a material's, and their list belongs to the
-//! world. [`triangle`] holds the geometry of sampling one.
+//! world. [`triangle`] holds the geometry of sampling one. A [`Sky`] is two lights, an image and a disc.
 
 mod constant;
 mod directional;
