@@ -49,9 +49,15 @@ mod embree {
             .header("ffi/embree_shim.h")
             .clang_arg(format!("-I{}", found.include.display()))
             .clang_arg(format!("-DGLINT_EMBREE_MAJOR={major}"))
-            .allowlist_function("(rtc|glint_).*")
-            .allowlist_type("(RTC|Glint).*")
-            .allowlist_var("(RTC_|GLINT_).*")
+            .allowlist_function("rtc(New|Release|Commit)(Device|Scene|Geometry)")
+            .allowlist_function(
+                "rtcSetShared(GeometryBuffer)|rtcSetSceneFlags|rtcAttachGeometryByID",
+            )
+            .allowlist_function("rtcSetGeometry(InstancedScene|Transform)")
+            .allowlist_function(
+                "rtc(Get|Set)Device(Error|Property|ErrorFunction|MemoryMonitorFunction)",
+            )
+            .allowlist_function("glint_.*")
             // An unknown value inside a Rust enum would be undefined behaviour: newtypes instead.
             .default_enum_style(bindgen::EnumVariation::NewType {
                 is_bitfield: false,

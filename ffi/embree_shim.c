@@ -23,14 +23,11 @@ typedef struct Query {
 static void filter(const struct RTCFilterFunctionNArguments *args) {
   const Query *query = (const Query *)args->context;
   if (!query->accept) return;
-  for (unsigned i = 0; i < args->N; i++) {
-    if (args->valid[i] == 0) continue;
-    const unsigned ray = RTCRayN_id(args->ray, args->N, i);
-    const unsigned instance = RTCHitN_instID(args->hit, args->N, i, 0);
-    const unsigned geometry = RTCHitN_geomID(args->hit, args->N, i);
-    const unsigned primitive = RTCHitN_primID(args->hit, args->N, i);
-    if (!query->accept(query->user, ray, instance, geometry, primitive)) args->valid[i] = 0;
-  }
+  /* Rays are traced one at a time: with N = 1 the SoA structures are RTCRay and RTCHit themselves. */
+  const struct RTCRay *ray = (const struct RTCRay *)args->ray;
+  const struct RTCHit *hit = (const struct RTCHit *)args->hit;
+  if (!query->accept(query->user, ray->id, hit->instID[0], hit->geomID, hit->primID))
+    args->valid[0] = 0;
 }
 
 void glint_filter_geometry(RTCGeometry geometry) {

@@ -1,1 +1,73 @@
-//! (to be written)
+//! Who is hit: the accelerator boundary, and the backends behind it.
+//!
+//! Knows nothing but `geometry`, so it is tested and timed without a scene. A backend decides only which
+//! primitive is hit; [`resolve`] computes t, u, v and the error bound from the ray and the vertices,
+//! so that all backends give the same bits wherever they agree. A batch is the interface: one ray is
+//! a batch of one. A ray's answer never depends on what else is in its batch.
+
+mod brute;
+#[cfg(feature = "embree")]
+pub mod embree;
+
+pub use brute::BruteForce;
+
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, intersect_triangle, offset_distance};
+use crate::math::DVec3;
+
+/// Answers batches of rays.
+pub trait Accelerator: Sync {
+    /// The closest accepted hit of each ray. `hits` is as long as `rays`.
+    fn closest<F: HitFilter>(&self, rays: &[Ray], filter: &F, hits: &mut [Hit]);
+
+    /// Whether any accepted surface blocks each ray. `blocked` is as long as `rays`.
+    fn occluded<F: HitFilter>(&self, rays: &[Ray], filter: &F, blocked: &mut [bool]);
+
+    /// What building it took.
+    fn build_stats(&self) -> BuildStats;
+}
+
+/// Decides which candidates count: cut-outs. Asked only about meshes marked `filtered`.
+///
+/// Must be a pure function of its arguments: backends ask it in any order and more than once.
+pub trait HitFilter: Sync {
+    /// Whether the surface is there for this ray.
+    fn accept(&self, ray: &Ray, candidate: &Hit) -> bool;
+}
+
+/// The filter of scenes without cut-outs: compiles away.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct AcceptAll;
+
+impl HitFilter for AcceptAll {
+    #[inline]
+    fn accept(&self, _: &Ray, _: &Hit) -> bool {
+        true
+    }
+}
+
+/// What a build took and made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BuildStats {
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// Bytes of nodes and leaves, without the geometry buffers.
+    pub bytes: usize,
+}
+
+/// The hit of `ray` on the primitive that a backend named: the same bits for every backend.
+#[inline]
+pub fn resolve(geometry: &Geometry, ray: &Ray, id: PrimitiveId) -> Hit {
+    let (vertices, instance_magnitude) = geometry.world_vertices(id);
+    let (t, u, v) = match intersect_triangle(ray, &vertices) {
+        Some(hit) => (hit.t, hit.u, hit.v),
+        // Seen edge-on: the backend's rounding found what has no extent; take the first vertex.
+        None => {
+            let direction = ray.direction.as_dvec3();
+            let along = (vertices[0] - ray.origin.as_dvec3()).dot(direction);
+            (((along / direction.length_squared()) as f32).max(ray.t_min), 0.0, 0.0)
+        }
+    };
+    let [a, b, c]: [DVec3; 3] = vertices;
+    let point = (a + (b - a) * f64::from(u) + (c - a) * f64::from(v)).as_vec3();
+    Hit { t, u, v, offset: offset_distance(point, &vertices, instance_magnitude), id }
+}

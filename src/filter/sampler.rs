@@ -4,8 +4,8 @@
 //! Weights are never renormalised, so a pixel is an unbiased estimate of the filtered image.
 
 use super::Filter;
+use super::inverse::InverseTable;
 use crate::math::ONE_MINUS_EPSILON;
-use crate::sampling::PiecewiseConstant1d;
 
 /// Draws positions with density |f(x) f(y)| / c and gives them the weight +c or -c, the sign of f(x) f(y),
 /// where f is normalised and c = (integral of |f|)^2, so that the expected weight is 1.
@@ -18,8 +18,8 @@ use crate::sampling::PiecewiseConstant1d;
 #[derive(Clone, Debug)]
 pub struct FilterSampler {
     radius: f32,
-    positive: PiecewiseConstant1d,
-    negative: PiecewiseConstant1d,
+    positive: InverseTable,
+    negative: InverseTable,
     /// Where the choices of the first number end, except the last, which ends at 1.
     ends: [f32; 3],
     weight: f32,
@@ -37,15 +37,21 @@ impl FilterSampler {
             (0..POINTS).map(|i| filter.evaluate(position(cell * POINTS + i))).sum::<f64>()
         };
         let values: Vec<f64> = (0..CELLS).map(mean).collect();
-        let positive = PiecewiseConstant1d::new(values.iter().map(|v| v.max(0.0)));
-        let negative = PiecewiseConstant1d::new(values.iter().map(|v| (-v).max(0.0)));
+        let positive: Vec<f64> = values.iter().map(|v| v.max(0.0)).collect();
+        let negative: Vec<f64> = values.iter().map(|v| (-v).max(0.0)).collect();
 
-        let absolute = positive.integral() + negative.integral();
-        let (p, n) = (positive.integral() / absolute, negative.integral() / absolute);
+        let (p, n): (f64, f64) = (positive.iter().sum(), negative.iter().sum());
+        let (p, n) = (p / (p + n), n / (p + n));
         // Along one axis (integral of |f|) / (integral of f) = 1 / (p - n).
         let weight = (1.0 / ((p - n) * (p - n))) as f32;
         let ends = [n * p, 2.0 * n * p, 2.0 * n * p + n * n].map(|end| end as f32);
-        Self { radius: filter.radius, positive, negative, ends, weight }
+        Self {
+            radius: filter.radius,
+            positive: InverseTable::new(&positive),
+            negative: InverseTable::new(&negative),
+            ends,
+            weight,
+        }
     }
 
     /// The size of every weight, at least 1. Its square is the factor by which the filter's negative lobes
@@ -69,7 +75,7 @@ impl FilterSampler {
             (0.0, end_np, &self.negative, &self.positive, -self.weight)
         };
         let u = ((u - start) / (end - start)).min(ONE_MINUS_EPSILON);
-        let offset = |part: &PiecewiseConstant1d, u| (2.0 * part.sample(u).0 - 1.0) * self.radius;
+        let offset = |part: &InverseTable, u| (2.0 * part.sample(u) - 1.0) * self.radius;
         ([offset(x, u), offset(y, v)], weight)
     }
 }

@@ -5,6 +5,7 @@
 //! decoded elsewhere. Must not know how light is transported, only what the files mean.
 
 mod environment;
+mod fingerprint;
 mod image_request;
 mod line_filter;
 mod mtl;
@@ -22,6 +23,7 @@ mod warning_list;
 
 pub use crate::image::ColorSpace;
 pub use environment::add_environment_image;
+pub use fingerprint::fingerprint;
 pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;
 pub use obj::{LoadedModel, load_obj};

@@ -68,26 +68,22 @@ pub fn load_obj(path: &Path) -> Result<LoadedModel> {
 
 /// Why a file without a single triangle cannot be rendered.
 fn nothing_to_render(path: &Path, scan: Scan) -> Error {
-    if let Some(first) = scan.first_dropped {
-        return match first {
-            Error::Parse { location, text, message, .. } => Error::parse(
-                location.path,
-                location.line,
-                text,
-                format!(
-                    "no usable face in this file: {} are broken; the first: {message}",
-                    scan.dropped
-                ),
-            ),
-            other => other,
-        };
+    let broken = scan.dropped;
+    match scan.first_dropped {
+        Some(Error::Parse { location, text, message, .. }) if scan.faces.is_empty() => {
+            let message =
+                format!("no usable face in this file: {broken} are broken; the first: {message}");
+            Error::parse(location.path, location.line, text, message)
+        }
+        _ => {
+            let reason = match (scan.faces.len(), broken) {
+                (0, _) => "no faces in this file (lines that begin with f); is it an OBJ model?",
+                (_, 0) => "no usable face in this file: all have zero area",
+                _ => "no usable face in this file: all are broken or have zero area",
+            };
+            Error::Scene(format!("{}: {reason}", path.display()))
+        }
     }
-    let reason = if scan.faces.is_empty() {
-        "no faces in this file (lines that begin with f); is it an OBJ model?"
-    } else {
-        "no usable face in this file: all triangles have zero area"
-    };
-    Error::Scene(format!("{}: {reason}", path.display()))
 }
 
 /// The material libraries of a model.

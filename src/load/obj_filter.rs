@@ -323,8 +323,9 @@ impl Scan {
 /// The face as the parser shall see it: as written when all that is written is used.
 fn write_face(corners: &[Corner], attributes: Attributes, words: &str, output: &mut Vec<u8>) {
     output.push(b'f');
-    let [_, uv, normal] = corners[0];
-    if (uv != 0) == attributes.uvs && (normal != 0) == attributes.normals {
+    let agrees =
+        |[_, uv, n]: &Corner| (*uv != 0) == attributes.uvs && (*n != 0) == attributes.normals;
+    if corners.iter().all(agrees) {
         output.push(b' ');
         output.extend_from_slice(words.as_bytes());
     } else {

@@ -152,7 +152,7 @@ impl Surface {
         if *fans > 0 {
             warnings.add("crossed polygons", Location::new(path, self.first_fan as usize), || {
                 format!(
-                    "polygons that cross themselves, cut as fans: {fans}, the first on this line"
+                    "polygons without a clear inside, cut as fans: {fans}, the first on this line"
                 )
             });
         }

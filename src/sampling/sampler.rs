@@ -86,6 +86,13 @@ impl PathSampler {
         }
     }
 
+    /// What hit filters know a ray of this path by: a hash of the path, the vertex and the kind of ray.
+    #[inline]
+    pub fn ray_id(&self, bounce: u32, kind: u32) -> u32 {
+        let path = self.key ^ u64::from(self.index);
+        (combine(path, u64::from(bounce) << 8 | u64::from(kind) | 1 << 63) >> 32) as u32
+    }
+
     #[inline]
     fn dimension_seed(&self, dimension: Dimension) -> u64 {
         combine(self.key, u64::from(dimension.index()))

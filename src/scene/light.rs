@@ -37,7 +37,8 @@ pub enum Light {
     },
 }
 
-/// What rays that leave the scene see. `up` of the scene is +y; azimuth turns from +z towards +x.
+/// What rays that leave the scene see, written for a scene whose up is +y ([`super::Scene::up`] turns it):
+/// azimuth turns from +z towards +x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Environment {
     /// The same radiance everywhere.

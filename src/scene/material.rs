@@ -184,6 +184,11 @@ impl Material {
         }
     }
 
+    /// Whether rays may pass through it: it must be asked about at every candidate hit.
+    pub fn is_cut_out(&self) -> bool {
+        self.opacity.value < 1.0 || self.opacity.texture.is_some()
+    }
+
     /// The grey that faces without a material get.
     pub fn default_grey() -> Self {
         Self::new("default", Surface::Lambert { albedo: ColorInput::constant(Rgb::splat(0.5)) })

@@ -17,7 +17,7 @@ pub use mesh::MeshData;
 
 use crate::error::Warning;
 use crate::image::Image;
-use crate::math::DAffine3;
+use crate::math::{DAffine3, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -72,8 +72,10 @@ pub struct Placement {
 }
 
 /// A whole scene as its files describe it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Scene {
+    /// Upward: orients the sky, image environments and the automatic camera. +y unless said.
+    pub up: DVec3,
     /// Model files that were read, each once however often it is placed.
     pub models: Vec<Model>,
     /// Where they stand.
@@ -94,6 +96,24 @@ pub struct Scene {
     pub warnings: Vec<Warning>,
     /// Every file that was read, in order: the scene's fingerprint covers their contents.
     pub inputs: Vec<PathBuf>,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            up: DVec3::Y,
+            models: Vec::new(),
+            placements: Vec::new(),
+            materials: Vec::new(),
+            images: Vec::new(),
+            lights: Vec::new(),
+            environment: None,
+            cameras: Vec::new(),
+            settings: SceneSettings::default(),
+            warnings: Vec::new(),
+            inputs: Vec::new(),
+        }
+    }
 }
 
 /// Render settings of a scene file; what is `None` was not said.

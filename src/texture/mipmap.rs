@@ -204,3 +204,134 @@ fn covered(i: u32, n: u32) -> impl Iterator<Item = (u32, f32)> {
     };
     (2 * i..).zip(shares).filter(|&(_, share)| share > 0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::CounterRng;
+
+    fn grey(width: u32, height: u32, texels: impl Iterator<Item = f32>) -> MipMap {
+        let pixels = Pixels::Float(texels.map(Rgb::splat).collect());
+        MipMap::new(Arc::new(Image::new(width, height, pixels, false).unwrap()))
+    }
+
+    #[test]
+    fn up_is_v_and_centres_are_exact() {
+        // Top row 1 2 3, bottom row 4 5 6.
+        let map = grey(3, 2, (1..7).map(|v| v as f32));
+        let at = |u: f32, v: f32| map.lookup([u, v], 0.0, Wrap::Clamp).0.r;
+        assert!((at(0.5 / 3.0, 0.25) - 4.0).abs() < 1e-6);
+        assert!((at(2.5 / 3.0, 0.75) - 3.0).abs() < 1e-6);
+        assert!((at(0.5, 0.5) - 3.5).abs() < 1e-6);
+        assert_eq!((at(0.0, 0.0), at(1.0, 1.0), at(-9.0, 9.0)), (4.0, 3.0, 1.0));
+    }
+
+    #[test]
+    fn wraps() {
+        let map = grey(2, 1, [0.0, 1.0].into_iter());
+        let at = |u: f32, wrap| map.lookup([u, 0.5], 0.0, wrap).0.r;
+        assert_eq!([at(0.0, Wrap::Repeat), at(1.0, Wrap::Repeat)], [0.5; 2]);
+        assert_eq!([at(0.0, Wrap::Clamp), at(1.0, Wrap::Clamp)], [0.0, 1.0]);
+        for i in -40..40 {
+            let u = i as f32 * 0.0625;
+            assert_eq!(at(u, Wrap::Repeat), at(u + 3.0, Wrap::Repeat));
+        }
+    }
+
+    /// Bilinear interpolation is continuous across the edges of texels and of the image.
+    #[test]
+    fn continuous() {
+        let mut rng = CounterRng::new(0);
+        let map = grey(7, 5, std::iter::repeat_with(move || rng.unit()).take(35));
+        for footprint in [0.0, 0.3, 0.7] {
+            for wrap in [Wrap::Repeat, Wrap::Clamp] {
+                let at = |i: i32| {
+                    map.lookup([i as f32 * 1e-3 - 2.0, i as f32 * 7e-4], footprint, wrap).0.r
+                };
+                for i in 0..4000 {
+                    assert!((at(i + 1) - at(i)).abs() < 0.02);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn any_coordinate_is_safe() {
+        let map = grey(5, 3, (0..15).map(|v| v as f32));
+        let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30, -1e-9, f32::MAX, 0.3];
+        for u in odd {
+            for v in odd {
+                for footprint in odd {
+                    for wrap in [Wrap::Repeat, Wrap::Clamp] {
+                        let (color, alpha) = map.lookup([u, v], footprint, wrap);
+                        assert!((0.0..=14.0).contains(&color.r), "{u} {v} {footprint}");
+                        assert!((alpha - 1.0).abs() < 1e-6);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Every level of every size has the mean of the image, so a box filter loses and invents no light.
+    #[test]
+    fn levels_keep_the_mean() {
+        let mut rng = CounterRng::new(0);
+        for (width, height) in
+            [(1, 1), (2, 2), (3, 3), (7, 5), (1, 13), (64, 1), (100, 37), (255, 129)]
+        {
+            let texels: Vec<f32> = (0..width * height).map(|_| rng.unit()).collect();
+            let mean = texels.iter().sum::<f32>() / texels.len() as f32;
+            let map = grey(width, height, texels.into_iter());
+            assert!((map.average().g - mean).abs() < 1e-5, "{width} x {height}");
+            assert_eq!(map.average_alpha(), 1.0);
+            for level in &map.coarser {
+                let Pixels::Float(texels) = level.pixels() else { panic!("storage changed") };
+                let sum: f32 = texels.iter().map(|c| c.g).sum();
+                assert!((sum / texels.len() as f32 - mean).abs() < 1e-5, "{width} x {height}");
+            }
+            let wide = map.lookup([0.3, 0.9], 1e9, Wrap::Repeat).0.g;
+            assert!((wide - mean).abs() < 1e-5);
+        }
+    }
+
+    /// Averaging is in linear light: half black and half white is 0.5, which sRGB encodes as 188.
+    #[test]
+    fn eight_bits_stay_eight_bits_in_linear_light() {
+        let texels =
+            (0..64 * 64).map(|i| if i % 2 == 0 { [0, 0, 0, 255] } else { [255; 4] }).collect();
+        let image = Image::new(64, 64, Pixels::Srgb8(texels), false).unwrap();
+        let map = MipMap::new(Arc::new(image));
+        assert_eq!(map.average(), Rgb::splat(0.5));
+        assert_eq!(*map.coarser[2].pixels(), Pixels::Srgb8(vec![[188, 188, 188, 255]; 64]));
+        // 64^2 + 32^2 + ... + 1 texels of 4 bytes: a third more than the image.
+        assert_eq!(map.bytes(), 4 * 5461);
+        assert_eq!(map.image().width(), 64);
+    }
+
+    /// A constant texture is the same constant at every level, to the bit of its storage.
+    #[test]
+    fn constants_stay() {
+        for code in 0..=255_u8 {
+            let texels = vec![[code, code, code, 255 - code]; 6 * 11];
+            for pixels in [Pixels::Srgb8(texels.clone()), Pixels::Linear8(texels)] {
+                let map = MipMap::new(Arc::new(Image::new(6, 11, pixels, true).unwrap()));
+                let first = map.finest.texel(0, 0);
+                assert!(map.coarser.iter().all(|level| level.texel(0, 0) == first));
+            }
+        }
+    }
+
+    /// The footprint chooses the level: stripes one texel wide are kept at a point and gone at two texels,
+    /// and the change between is continuous.
+    #[test]
+    fn footprint_blurs() {
+        let map = grey(64, 64, (0..64 * 64).map(|i| (i % 2) as f32));
+        let contrast = |texels: f32| {
+            let at = |x: f32| map.lookup([x / 64.0, 0.5], texels / 64.0, Wrap::Repeat).0.r;
+            at(1.5) - at(0.5)
+        };
+        assert_eq!((contrast(0.0), contrast(1.0), contrast(2.0)), (1.0, 1.0, 0.0));
+        assert!((contrast(fun::pow(2.0, 0.25)) - 0.75).abs() < 1e-5);
+        assert!(contrast(1.001) > 0.998);
+    }
+}

@@ -1,1 +1,149 @@
-//! (to be written)
+//! Paths: the wavefront that advances many of them together, and a naive integrator to hold it against.
+//!
+//! A block is a rectangle of pixels and a range of samples; what comes out is one [`PixelSample`] a path.
+//! The order in which they come out means nothing: the film adds them exactly.
+
+mod aov;
+mod path;
+pub mod naive;
+mod wavefront;
+
+pub use aov::{FirstHit, first_hit};
+pub use wavefront::Wavefront;
+
+use crate::accel::Accelerator;
+use crate::camera::Camera;
+use crate::filter::FilterSampler;
+use crate::geometry::PrimitiveId;
+use crate::math::Rgb;
+use crate::sampling::{Dimension, PathSampler, Sampler};
+use crate::world::World;
+
+/// Everything a path needs to know; shared by all workers.
+pub struct Tracer<'a, A> {
+    /// The compiled scene.
+    pub world: &'a World,
+    /// Who is hit; built from `world.geometry`.
+    pub accelerator: &'a A,
+    /// The camera, relative to the world's origin.
+    pub camera: &'a Camera,
+    /// The pixel filter.
+    pub filter: &'a FilterSampler,
+    /// The random numbers.
+    pub sampler: Sampler,
+    /// Path segments; 1 shows emitters only, `u32::MAX` is unbounded.
+    pub max_depth: u32,
+    /// Whether the environment is hidden from rays that come straight from the camera.
+    pub hide_background: bool,
+}
+
+/// A rectangle of pixels and a range of samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Left and top pixel.
+    pub start: [u32; 2],
+    /// One past the right and bottom pixel.
+    pub end: [u32; 2],
+    /// First sample.
+    pub first_sample: u64,
+    /// One past the last sample.
+    pub end_sample: u64,
+}
+
+impl Block {
+    /// Number of paths in it.
+    pub fn paths(&self) -> u64 {
+        let [width, height] = [0, 1].map(|k| u64::from(self.end[k] - self.start[k]));
+        width * height * (self.end_sample - self.first_sample)
+    }
+
+    /// Pixel and sample of path number `n`: all samples of a pixel, then the next pixel.
+    #[inline]
+    pub fn path(&self, n: u64) -> ([u32; 2], u64) {
+        let samples = self.end_sample - self.first_sample;
+        let (pixel, sample) = (n / samples, n % samples);
+        let width = u64::from(self.end[0] - self.start[0]);
+        let x = self.start[0] + (pixel % width) as u32;
+        let y = self.start[1] + (pixel / width) as u32;
+        ([x, y], self.first_sample + sample)
+    }
+}
+
+/// What one path found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelSample {
+    /// Which pixel.
+    pub pixel: [u32; 2],
+    /// Which sample of it.
+    pub sample: u64,
+    /// Radiance times the filter's weight.
+    pub radiance: Rgb,
+    /// 1 if the camera ray met a surface, else 0, times the filter's weight.
+    pub coverage: f32,
+    /// How many vertices the path had when it ended.
+    pub bounces: u32,
+    /// The last surface it met.
+    pub last_hit: PrimitiveId,
+}
+
+impl<A: Accelerator> Tracer<'_, A> {
+    /// The start of a path: its camera ray with the cone around it, its numbers, its filter weight.
+    #[inline]
+    pub(crate) fn camera_ray(&self, pixel: [u32; 2], sample: u64) -> CameraStart {
+        let sampler = self.sampler.path(pixel[0], pixel[1], sample);
+        let (offset, weight) = self.filter.sample(sampler.two(Dimension::Film));
+        let film = [0, 1].map(|k| pixel[k] as f32 + 0.5 + offset[k]);
+        let lens = if self.camera.needs_lens() { sampler.two(Dimension::Lens) } else { [0.5; 2] };
+        let mut start = self.camera.ray(film, lens);
+        start.ray.id = sampler.ray_id(0, RayKind::Path as u32);
+        CameraStart {
+            sampler,
+            weight,
+            ray: start.ray,
+            spread: start.spread,
+            width: start.initial_width,
+        }
+    }
+}
+
+/// What [`Tracer::camera_ray`] starts a path with.
+pub(crate) struct CameraStart {
+    pub(crate) sampler: PathSampler,
+    pub(crate) weight: f32,
+    pub(crate) ray: crate::geometry::Ray,
+    pub(crate) spread: f32,
+    pub(crate) width: f32,
+}
+
+/// Kinds of rays, so that a path's rays have different ids for hit filters.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum RayKind {
+    /// Continues a path.
+    Path = 0,
+    /// Asks whether a light is visible.
+    Shadow = 1,
+}
+
+/// The power heuristic with exponent 2 (Veach 1997, section 9.2.4): the weight of a sample that its
+/// own strategy draws with density `own` and the other one with density `other`.
+#[inline]
+pub(crate) fn power_heuristic(own: f32, other: f32) -> f32 {
+    // In ratios: squares of large densities would overflow.
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+/// Probability that a path of this throughput goes on past vertex `bounce` (0: the camera ray's hit).
+///
+/// Unbiased for any value above 0. Short paths always go on; long ones end sooner or later even in a
+/// closed scene that absorbs nothing.
+#[inline]
+pub(crate) fn survival_probability(throughput: Rgb, eta_scale: f32, bounce: u32) -> f32 {
+    const FREE_BOUNCES: u32 = 2;
+    const SURE_BOUNCES: u32 = 16;
+    if bounce < FREE_BOUNCES {
+        return 1.0;
+    }
+    let cap = if bounce < SURE_BOUNCES { 1.0 } else { 0.95 };
+    (throughput.max_channel() * eta_scale).clamp(0.05, cap)
+}

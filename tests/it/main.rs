@@ -1,5 +1,14 @@
-//! One integration binary.
-#![cfg(test)]
+//! The one integration binary: physics, statistics and rules of the house.
 
+mod accel;
+mod closed_forms;
+mod determinism;
+mod filter;
+mod image;
+mod load_mutations;
+mod mtl;
+mod obj;
 mod scene_file;
 mod scene_file_errors;
+mod support;
+mod tidy;

@@ -1,0 +1,123 @@
+//! Batches of rays through Embree: our rays into its layout, its ids back into our hits.
+
+use super::scene::EmbreeScene;
+use super::sys;
+use crate::accel::{HitFilter, resolve};
+use crate::geometry::{Geometry, Hit, Ray};
+use std::ffi::{c_int, c_uint, c_void};
+
+/// Rays handed to the shim in one call: large enough to hide the call, small enough to stay in L1.
+const CHUNK: usize = 64;
+
+/// What a filter callback needs to ask our filter.
+struct FilterQuery<'a, F> {
+    filter: &'a F,
+    rays: &'a [Ray],
+    geometry: &'a Geometry,
+    scene: &'a EmbreeScene,
+}
+
+/// Embree found a candidate on a filtered mesh. `extern "C"` aborts on unwind: no panic crosses into C.
+unsafe extern "C" fn accept<F: HitFilter>(
+    user: *const c_void,
+    ray: c_uint,
+    instance: c_uint,
+    geometry: c_uint,
+    primitive: c_uint,
+) -> c_int {
+    // SAFETY: `user` is the FilterQuery<F> that the calls below pass together with `accept::<F>`, and
+    // it lives for the whole call.
+    let query = unsafe { &*user.cast::<FilterQuery<'_, F>>() };
+    let ray = &query.rays[ray as usize];
+    let id = query.scene.primitive_id(instance, geometry, primitive);
+    c_int::from(query.filter.accept(ray, &resolve(query.geometry, ray, id)))
+}
+
+/// `ray` in Embree's layout; its id is its place in the chunk, by which the filter finds it again.
+#[inline]
+fn to_embree(ray: &Ray, place: usize) -> sys::RTCRay {
+    sys::RTCRay {
+        org_x: ray.origin.x,
+        org_y: ray.origin.y,
+        org_z: ray.origin.z,
+        tnear: ray.t_min,
+        dir_x: ray.direction.x,
+        dir_y: ray.direction.y,
+        dir_z: ray.direction.z,
+        time: 0.0,
+        tfar: ray.t_max,
+        mask: u32::MAX,
+        id: place as u32,
+        flags: 0,
+    }
+}
+
+/// See [`crate::accel::Accelerator::closest`].
+pub(super) fn closest<F: HitFilter>(
+    scene: &EmbreeScene,
+    geometry: &Geometry,
+    rays: &[Ray],
+    filter: &F,
+    hits: &mut [Hit],
+) {
+    let mut buffer = [sys::RTCRayHit::default(); CHUNK];
+    for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
+        for (place, ray) in rays.iter().enumerate() {
+            buffer[place].ray = to_embree(ray, place);
+            buffer[place].hit.geomID = u32::MAX;
+            buffer[place].hit.instID = [u32::MAX; 1];
+        }
+        let query = FilterQuery { filter, rays, geometry, scene };
+        // SAFETY: the scene is committed; the buffer holds rays.len() initialised, aligned ray-hits; the
+        // query outlives the call and is of the type that accept::<F> expects.
+        unsafe {
+            sys::glint_closest(
+                scene.handle(),
+                buffer.as_mut_ptr(),
+                rays.len() as u32,
+                Some(accept::<F>),
+                std::ptr::from_ref(&query).cast(),
+            );
+        }
+        // A loop of its own: the vertex fetches of neighbouring hits overlap.
+        for ((ray, answer), hit) in rays.iter().zip(&buffer).zip(hits) {
+            let found = &answer.hit;
+            *hit = if found.geomID == u32::MAX {
+                Hit::MISS
+            } else {
+                let id = scene.primitive_id(found.instID[0], found.geomID, found.primID);
+                resolve(geometry, ray, id)
+            };
+        }
+    }
+}
+
+/// See [`crate::accel::Accelerator::occluded`].
+pub(super) fn occluded<F: HitFilter>(
+    scene: &EmbreeScene,
+    geometry: &Geometry,
+    rays: &[Ray],
+    filter: &F,
+    blocked: &mut [bool],
+) {
+    let mut buffer = [sys::RTCRay::default(); CHUNK];
+    for (rays, blocked) in rays.chunks(CHUNK).zip(blocked.chunks_mut(CHUNK)) {
+        for (place, ray) in rays.iter().enumerate() {
+            buffer[place] = to_embree(ray, place);
+        }
+        let query = FilterQuery { filter, rays, geometry, scene };
+        // SAFETY: as in `closest`.
+        unsafe {
+            sys::glint_occluded(
+                scene.handle(),
+                buffer.as_mut_ptr(),
+                rays.len() as u32,
+                Some(accept::<F>),
+                std::ptr::from_ref(&query).cast(),
+            );
+        }
+        for (answer, blocked) in buffer.iter().zip(blocked) {
+            *blocked = answer.tfar == f32::NEG_INFINITY;
+        }
+    }
+}

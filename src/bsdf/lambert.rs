@@ -1,0 +1,53 @@
+//! Ideal diffuse reflection: f = albedo / pi (Lambert 1760).
+
+use super::{BsdfSample, BsdfValue, LobeKind, Scatter};
+use crate::math::{Rgb, Vec3};
+use crate::sampling::warp;
+
+/// Ideal diffuse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lambert {
+    albedo: Rgb,
+}
+
+impl Lambert {
+    /// `albedo` in [0, 1].
+    #[inline]
+    pub fn new(albedo: Rgb) -> Self {
+        Self { albedo }
+    }
+}
+
+impl Scatter for Lambert {
+    #[inline]
+    fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return BsdfValue::ZERO;
+        }
+        let pdf_solid_angle = warp::cosine_hemisphere_pdf(wi.z);
+        BsdfValue { f_cos: self.albedo * pdf_solid_angle, pdf_solid_angle }
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vec3, _lobe: f32, direction: [f32; 2]) -> Option<BsdfSample> {
+        let wi = warp::cosine_hemisphere(direction);
+        (wo.z > 0.0 && wi.z > 0.0).then(|| BsdfSample {
+            wi,
+            weight: self.albedo,
+            pdf_solid_angle: warp::cosine_hemisphere_pdf(wi.z),
+            is_delta: false,
+            kind: LobeKind::Diffuse,
+            eta_scale: 1.0,
+        })
+    }
+
+    #[inline]
+    fn albedo(&self, _wo: Vec3) -> Rgb {
+        self.albedo
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,181 @@
+//! A hit expanded into what shading needs: point, normals, texture coordinates, footprint.
+//!
+//! Sources: ray cones for texture footprints, Akenine-Möller et al., "Improved Shader and Texture Level
+//! of Detail Using Ray Cones", JCGT 10(1), 2021; bump mapping, Blinn 1978, with the height gradient
+//! taken over the footprint.
+
+use super::World;
+use super::material::{lookup, wrap_of};
+use crate::geometry::{Hit, NONE, Ray};
+use crate::math::{DVec3, Frame, Vec3};
+use crate::scene::{MaterialId, NormalInput, TextureReference};
+
+/// The surface where a ray met it, seen from the side the ray came from.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceInteraction {
+    /// The point, relative to the world origin.
+    pub point: Vec3,
+    /// How far along `n_geometric` a ray must start so as not to meet this surface again.
+    pub offset: f32,
+    /// Unit normal of the triangle, towards the ray's origin.
+    pub n_geometric: Vec3,
+    /// Shading frame; its normal is on the ray's side too.
+    pub frame: Frame,
+    /// Whether the ray came from outside (the side the file's winding faces).
+    pub entering: bool,
+    /// Texture coordinates; 0 where the mesh has none.
+    pub uv: [f32; 2],
+    /// Width of the ray's footprint in texture coordinates.
+    pub footprint: f32,
+    /// Material of the triangle.
+    pub material: MaterialId,
+}
+
+impl SurfaceInteraction {
+    /// Where a ray that leaves towards `direction` starts: past the surface on that side for sure.
+    #[inline]
+    pub fn origin_towards(&self, direction: Vec3) -> Vec3 {
+        let side = if direction.dot(self.n_geometric) < 0.0 { -self.offset } else { self.offset };
+        self.point + self.n_geometric * side
+    }
+}
+
+impl World {
+    /// Expands `hit`, which must be one, of `ray`, whose cone is `width` wide there.
+    pub fn interact(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfaceInteraction {
+        let ([a, b, c], _) = self.geometry.world_vertices(hit.id);
+        let (ab, ac) = (b - a, c - a);
+        let (u, v) = (f64::from(hit.u), f64::from(hit.v));
+        let point = (a + ab * u + ac * v).as_vec3();
+        let mirrored = hit.id.instance != NONE && self.instances[hit.id.instance as usize].1;
+
+        // Geometric normal in f64: slivers keep their direction.
+        let area_vector = ab.cross(ac);
+        let outward = normalize_or(area_vector, -ray.direction.as_dvec3());
+        let outward = if mirrored { -outward } else { outward };
+        let entering = outward.dot(ray.direction) < 0.0;
+        let n_geometric = if entering { outward } else { -outward };
+
+        let surface = self.surface(hit.id);
+        let corners = self.geometry.mesh(hit.id).triangles[hit.id.primitive as usize];
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+
+        let mut n_shading = n_geometric;
+        if !surface.normals.is_empty() {
+            let normal = interpolate(corners, weights, |i| Vec3::from_array(surface.normals[i]));
+            let normal = match hit.id.instance {
+                NONE => normal,
+                i => self.geometry.instances[i as usize].world_from_object.transform_normal(normal),
+            };
+            let normal = normal.normalize_or_zero();
+            if normal != Vec3::ZERO {
+                n_shading = if normal.dot(n_geometric) < 0.0 { -normal } else { normal };
+            }
+        }
+
+        let material = self.material_id(hit.id);
+        let mut interaction = SurfaceInteraction {
+            point,
+            offset: hit.offset,
+            n_geometric,
+            frame: Frame::from_normal(n_shading),
+            entering,
+            uv: [0.0; 2],
+            footprint: 0.0,
+            material,
+        };
+        if !surface.uvs.is_empty() {
+            let [uv_a, uv_b, uv_c] = corners.map(|i| surface.uvs[i as usize]);
+            let mix = |k: usize| weights[0] * uv_a[k] + weights[1] * uv_b[k] + weights[2] * uv_c[k];
+            interaction.uv = [mix(0), mix(1)];
+            let (du1, dv1) = (uv_b[0] - uv_a[0], uv_b[1] - uv_a[1]);
+            let (du2, dv2) = (uv_c[0] - uv_a[0], uv_c[1] - uv_a[1]);
+            let uv_area = du1 * dv2 - dv1 * du2;
+            let area = area_vector.length() as f32;
+            // The cone's section on the surface, as if it were as wide as it is long.
+            let cos_theta = (-ray.direction).dot(n_geometric).max(0.05);
+            interaction.footprint = width * (uv_area.abs() / area / cos_theta).sqrt();
+
+            // dp/du and dp/dv span the tangent frame that normal maps are written in.
+            if let (Some(normal), true) = (&self.material(material).normal, uv_area != 0.0) {
+                let inverse = f64::from(1.0 / uv_area);
+                let dp_du = (ab * f64::from(dv2) - ac * f64::from(dv1)) * inverse;
+                let frame = Frame::from_normal_tangent(n_shading, dp_du.as_vec3());
+                // Texture v runs along the bitangent, or against it where the mapping is mirrored.
+                let dp_dv = (ac * f64::from(du1) - ab * f64::from(du2)) * inverse;
+                let handedness = 1.0_f32.copysign(frame.bitangent.dot(dp_dv.as_vec3()));
+                n_shading = self.perturb(normal, &interaction, &frame, handedness);
+                interaction.frame = Frame::from_normal(n_shading);
+            }
+        }
+        interaction.frame = facing(interaction.frame, -ray.direction);
+        interaction
+    }
+
+    /// The shading normal after a normal or bump map.
+    fn perturb(
+        &self,
+        input: &NormalInput,
+        at: &SurfaceInteraction,
+        frame: &Frame,
+        handedness: f32,
+    ) -> Vec3 {
+        let local = match input {
+            NormalInput::Map(texture) => {
+                let rgb = lookup(&self.textures, texture, at.uv, at.footprint).0;
+                Vec3::new(
+                    2.0 * rgb.r - 1.0,
+                    (2.0 * rgb.g - 1.0) * handedness,
+                    (2.0 * rgb.b - 1.0).max(0.05),
+                )
+            }
+            NormalInput::Bump { texture, strength } => {
+                let (du, dv) = self.height_gradient(texture, at);
+                Vec3::new(-strength * du, -strength * dv * handedness, 1.0)
+            }
+        };
+        let normal = frame.world_from_local(local).normalize_or_zero();
+        // A map that turns the normal below the triangle would show its back: stay on this side.
+        if normal.dot(at.n_geometric) > 0.0 { normal } else { frame.normal }
+    }
+
+    /// Height differences per unit of texture coordinate, over half a texel or the footprint.
+    fn height_gradient(&self, texture: &TextureReference, at: &SurfaceInteraction) -> (f32, f32) {
+        let map = &self.textures[texture.image.index()];
+        let [width, height] = [map.image().width(), map.image().height()].map(|n| n as f32);
+        let uv = [0, 1].map(|k| at.uv[k] * texture.scale[k] + texture.offset[k]);
+        let footprint = at.footprint * texture.scale[0].abs().max(texture.scale[1].abs());
+        let step = [(0.5 / width).max(0.5 * footprint), (0.5 / height).max(0.5 * footprint)];
+        let sample = |du: f32, dv: f32| {
+            map.lookup([uv[0] + du, uv[1] + dv], footprint, wrap_of(texture)).0.r
+        };
+        let du = (sample(step[0], 0.0) - sample(-step[0], 0.0)) / (2.0 * step[0]);
+        let dv = (sample(0.0, step[1]) - sample(0.0, -step[1])) / (2.0 * step[1]);
+        (du, dv)
+    }
+}
+
+#[inline]
+fn interpolate(corners: [u32; 3], weights: [f32; 3], value: impl Fn(usize) -> Vec3) -> Vec3 {
+    let [a, b, c] = corners.map(|i| value(i as usize));
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+#[inline]
+fn normalize_or(v: DVec3, fallback: DVec3) -> Vec3 {
+    let length = v.length();
+    if length > 0.0 { (v / length).as_vec3() } else { fallback.normalize().as_vec3() }
+}
+
+/// Turns the frame as little as needed for its normal to face `wo`: an interpolated normal may point
+/// away near silhouettes.
+#[inline]
+fn facing(frame: Frame, wo: Vec3) -> Frame {
+    const GRAZING: f32 = 1e-3;
+    let wo = wo.normalize();
+    let cos_theta = frame.normal.dot(wo);
+    if cos_theta >= GRAZING {
+        return frame;
+    }
+    Frame::from_normal((frame.normal + wo * (GRAZING - cos_theta)).normalize())
+}
