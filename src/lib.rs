@@ -12,6 +12,7 @@ pub mod math;
 pub mod sampling;
 pub mod image;
 pub mod ledger;
+pub mod os;
 
 // Models: pure types and functions that know no scene.
 pub mod geometry;
@@ -29,3 +30,6 @@ pub mod world;
 pub mod trace;
 pub mod film;
 pub mod render;
+
+// Front end.
+pub mod cli;

@@ -1,2 +1,5 @@
-//! The command line program.
-fn main() {}
+//! The `glint` program: everything is in the library.
+
+fn main() -> std::process::ExitCode {
+    glint::cli::main()
+}

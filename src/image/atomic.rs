@@ -19,15 +19,28 @@ pub fn write_whole(
     write: impl FnOnce(&mut BufWriter<AtomicWriteFile>) -> io::Result<()>,
 ) -> Result<()> {
     let failed = |source| Error::io(path, "write", source);
-    let target = path.canonicalize();
-    let target = target.as_deref().unwrap_or(path);
-    if target.exists() && !target.is_file() {
-        let reason = "it exists and is not a regular file: name another output file";
-        return Err(failed(io::Error::new(io::ErrorKind::InvalidInput, reason)));
-    }
-    let file = OpenOptions::new().read(true).open(target).map_err(failed)?;
+    let file = begin(path).map_err(failed)?;
     let mut writer = BufWriter::with_capacity(1 << 18, file);
     write(&mut writer).map_err(failed)?;
     writer.flush().map_err(failed)?;
     writer.into_inner().map_err(|e| failed(e.into_error()))?.commit().map_err(failed)
+}
+
+/// Whether [`write_whole`] could begin now: the folder is there and takes files. Leaves nothing behind.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn check_writable(path: &Path) -> Result<()> {
+    begin(path).map(drop).map_err(|source| Error::io(path, "write", source))
+}
+
+/// A file beside the target, to be renamed over it.
+fn begin(path: &Path) -> io::Result<AtomicWriteFile> {
+    let target = path.canonicalize();
+    let target = target.as_deref().unwrap_or(path);
+    if target.exists() && !target.is_file() {
+        let reason = "it exists and is not a regular file: name another output file";
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    }
+    OpenOptions::new().read(true).open(target)
 }

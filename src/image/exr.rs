@@ -189,11 +189,12 @@ pub fn read_exr_channels(path: &Path) -> Result<ExrImage> {
     let file = open(path)?;
     // The decoder of one compression (B44) can overflow on damaged data, which panics where arithmetic is
     // checked. In one thread the panic can be caught; in the crate's thread pool it would abort.
-    catch_unwind(AssertUnwindSafe(|| decode(path, file))).unwrap_or_else(|_| Err(damaged(path, "")))
+    catch_unwind(AssertUnwindSafe(|| decode(path, file)))
+        .unwrap_or_else(|_| Err(damaged(path, "decoding failed")))
 }
 
 fn damaged(path: &Path, reason: impl std::fmt::Display) -> Error {
-    Error::image(path, format!("the EXR file is damaged, write it again: {reason}"))
+    Error::image(path, format!("{reason}; the EXR file is damaged, write it again"))
 }
 
 fn decode(path: &Path, file: impl BufRead + Seek) -> Result<ExrImage> {

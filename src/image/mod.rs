@@ -11,7 +11,7 @@ mod tonemap;
 mod write;
 
 pub use self::exr::{Attribute, ExrImage, Samples, read_exr_channels, write_exr};
-pub use atomic::write_whole;
+pub use atomic::{check_writable, write_whole};
 pub use read::{ColorSpace, MAX_BYTES, MAX_SIDE, read};
 pub use tonemap::{ToneMap, auto_exposure, develop};
 pub use write::{write_hdr, write_png};
@@ -170,4 +170,50 @@ fn decode_float([r, g, b, a]: [f32; 4]) -> (Rgb, f32) {
 #[inline]
 fn unit(value: u8) -> f32 {
     f32::from(value) / 255.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_storage_is_looked_up_in_linear_light() {
+        let expect = |pixels, has_alpha, color: Rgb, alpha| {
+            let image = Image::new(2, 1, pixels, has_alpha).unwrap();
+            assert_eq!(image.texel(1, 0), (color, alpha));
+        };
+        let texel = [0, 51, 255, 102];
+        let linear = Rgb::new(0.0, 0.2, 1.0);
+        expect(Pixels::Srgb8(vec![[9; 4], texel]), true, linear.map(srgb::decode), 0.4);
+        expect(Pixels::Linear8(vec![[9; 4], texel]), true, linear, 0.4);
+        expect(Pixels::Grey8(vec![9, 51]), false, Rgb::splat(0.2), 1.0);
+        expect(Pixels::Float(vec![Rgb::BLACK, linear]), false, linear, 1.0);
+        expect(Pixels::FloatAlpha(vec![[9.0; 4], [0.0, 0.2, 1.0, 0.4]]), true, linear, 0.4);
+    }
+
+    #[test]
+    fn sizes_must_agree() {
+        assert!(Image::new(2, 2, Pixels::Grey8(vec![0; 3]), false).is_none());
+        assert!(Image::new(0, 2, Pixels::Grey8(vec![]), false).is_none());
+        assert_eq!(Image::missing().texel(0, 0).0, Rgb::new(1.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn bytes_are_those_of_the_storage() {
+        assert_eq!(Pixels::Grey8(vec![0; 10]).bytes(), 10);
+        assert_eq!(Pixels::Srgb8(vec![[0; 4]; 10]).bytes(), 40);
+        assert_eq!(Pixels::Float(vec![Rgb::BLACK; 10]).bytes(), 120);
+        assert_eq!(Pixels::FloatAlpha(vec![[0.0; 4]; 10]).bytes(), 160);
+    }
+
+    #[test]
+    fn non_finite_texels_are_replaced_and_counted() {
+        let (nan, inf) = (f32::NAN, f32::INFINITY);
+        let texels = vec![Rgb::new(nan, 1.0, inf), Rgb::new(-2.0, -inf, 0.0), Rgb::WHITE];
+        let mut image = Image::new(3, 1, Pixels::Float(texels), false).unwrap();
+        assert_eq!(image.replace_non_finite(), 2);
+        assert_eq!(image.texel(0, 0).0, Rgb::new(0.0, 1.0, 65504.0));
+        assert_eq!(image.texel(1, 0).0, Rgb::new(-2.0, -65504.0, 0.0));
+        assert_eq!(image.replace_non_finite(), 0);
+    }
 }

@@ -15,7 +15,7 @@ use std::path::Path;
 /// The longest side that an image may have, pixels.
 pub const MAX_SIDE: u32 = 32768;
 
-/// The most memory that a decoded image may take, bytes.
+/// The most memory that a decoded file may take, bytes. (In an [`Image`] three 8-bit channels become four.)
 pub const MAX_BYTES: u64 = 2 << 30;
 
 /// What the numbers of a file with 8 or 16 bits a channel mean. HDR and EXR files are linear always.

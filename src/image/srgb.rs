@@ -57,14 +57,15 @@ mod tests {
     #[test]
     fn every_code_is_exact_and_survives_a_round_trip() {
         for code in 0..=255_u8 {
-            let encoded = f64::from(code) / 255.0;
-            let linear = match encoded {
+            let exact = |encoded: f64| match encoded {
                 x if x <= 0.04045 => x / 12.92,
                 x => libm::pow((x + 0.055) / 1.055, 2.4),
             };
-            assert_eq!(LINEAR[usize::from(code)], linear as f32, "code {code}");
-            assert_eq!(decode(encoded as f32), linear as f32, "code {code}");
-            assert_eq!(encode8(linear as f32), code);
+            let linear = exact(f64::from(code) / 255.0) as f32;
+            assert_eq!(LINEAR[usize::from(code)], linear, "code {code}");
+            assert_eq!(encode8(linear), code);
+            let encoded = f32::from(code) / 255.0;
+            assert_eq!(decode(encoded), exact(f64::from(encoded)) as f32, "code {code}");
         }
     }
 

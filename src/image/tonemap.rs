@@ -47,8 +47,8 @@ impl ToneMap {
 
     /// Display-linear colour in [0, 1] of an exposed colour. Negative channels and NaN count as 0.
     pub fn apply(self, exposed: Rgb) -> Rgb {
-        // Beyond 16 stops every map is at its white; the bound keeps infinity out of the arithmetic.
-        let exposed = exposed.map(|c| c.max(0.0).min(65536.0));
+        // The upper bound, 50 stops above white, keeps infinity out of the arithmetic.
+        let exposed = exposed.map(|c| if c > 0.0 { c.min(1e15) } else { 0.0 });
         let mapped = match self {
             Self::None => exposed,
             Self::Aces => exposed.map(aces),
@@ -132,4 +132,117 @@ pub fn auto_exposure(pixels: impl IntoIterator<Item = Rgb>) -> f32 {
     let sum: f64 = middle.iter().map(|&l| f64::from(fun::ln(l))).sum();
     let log_average = (sum / middle.len() as f64) as f32;
     (fun::ln(0.18) - log_average) / LN_2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::CounterRng;
+
+    #[test]
+    fn names_are_parsed() {
+        for (name, tonemap) in ToneMap::ALL {
+            assert_eq!(ToneMap::parse(name).unwrap(), tonemap);
+        }
+        let message = ToneMap::parse("filmic").unwrap_err().to_string();
+        assert!(message.contains("none, aces, agx, reinhard"), "{message}");
+    }
+
+    /// Every channel of every colour grows with exposure, from 0 at black to at most 1.
+    #[test]
+    fn monotonic_from_black_to_white() {
+        let mut rng = CounterRng::new(0);
+        for (name, tonemap) in ToneMap::ALL {
+            assert_eq!(tonemap.apply(Rgb::BLACK), Rgb::BLACK, "{name}");
+            for _ in 0..100 {
+                let color = Rgb::new(rng.unit(), rng.unit(), rng.unit());
+                let mut before = Rgb::BLACK;
+                for step in -200..=200 {
+                    let exposed = color * fun::pow(2.0, step as f32 * 0.1);
+                    let mapped = tonemap.apply(exposed);
+                    for channel in 0..3 {
+                        assert!(mapped[channel] <= 1.0);
+                        // The rounding of the curves is far below a step of 8 bits.
+                        assert!(mapped[channel] >= before[channel] - 1e-6, "{name} {exposed:?}");
+                    }
+                    before = mapped;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn known_points() {
+        let grey = |tonemap: ToneMap, v: f32| tonemap.apply(Rgb::splat(v)).g;
+        let near = |a: f32, b: f32| assert!((a - b).abs() < 2e-3, "{a} {b}");
+        assert_eq!(grey(ToneMap::None, 0.18), 0.18);
+        assert_eq!(grey(ToneMap::None, 5.0), 1.0);
+        near(grey(ToneMap::Reinhard, 1.0), 0.5);
+        // AgX keeps middle grey, and takes white and black from the ends of its 16.5 stops.
+        near(grey(ToneMap::Agx, 0.18), 0.18);
+        near(grey(ToneMap::Agx, 0.18 * fun::pow(2.0, 6.5)), 1.0);
+        near(grey(ToneMap::Agx, 0.18 * fun::pow(2.0, -10.0)), 0.0);
+        // Far beyond white every channel of a colour clips or goes to white, as the map says.
+        let red = Rgb::new(1000.0, 1.0, 1.0);
+        assert_eq!(ToneMap::None.apply(red), Rgb::WHITE);
+        assert!(ToneMap::Agx.apply(red).g > 0.5);
+        assert!(ToneMap::Reinhard.apply(red).g < 0.01);
+    }
+
+    #[test]
+    fn what_is_no_light_is_black_or_white() {
+        for (name, tonemap) in ToneMap::ALL {
+            let pixels =
+                [f32::NAN, -1.0, f32::NEG_INFINITY, f32::INFINITY, f32::MAX].map(Rgb::splat);
+            let developed = develop(&pixels, 0.0, tonemap);
+            assert_eq!(developed[..3], [[0; 3]; 3], "{name}");
+            assert!(developed[3..].iter().flatten().all(|&v| v >= 254), "{name} {developed:?}");
+        }
+    }
+
+    #[test]
+    fn without_a_map_development_is_the_srgb_curve() {
+        for code in 0..=255_u8 {
+            let linear = Rgb::splat(srgb::LINEAR[usize::from(code)]);
+            assert_eq!(develop(&[linear], 0.0, ToneMap::None), [[code; 3]]);
+            assert_eq!(develop(&[linear * 0.25], 2.0, ToneMap::None), [[code; 3]]);
+        }
+    }
+
+    /// Radiance over six powers of ten, some of it black, some of it not finite.
+    fn picture(scale: f32) -> Vec<Rgb> {
+        let mut rng = CounterRng::new(0);
+        let pixel = |i: usize| match i % 10 {
+            0 => Rgb::BLACK,
+            1 => Rgb::splat(f32::NAN),
+            _ => Rgb::splat(scale * fun::pow(10.0, 6.0 * rng.unit() - 3.0)),
+        };
+        (0..10_000).map(pixel).collect()
+    }
+
+    #[test]
+    fn exposure_follows_the_scale_of_light() {
+        let base = auto_exposure(picture(1.0));
+        // The median of the picture is 1.
+        assert!((base - fun::ln(0.18) / LN_2).abs() < 0.2, "{base}");
+        for scale in [1e-6, 1e-3, 1e6] {
+            let shifted = auto_exposure(picture(scale)) + fun::ln(scale) / LN_2;
+            assert!((shifted - base).abs() < 1e-4, "{scale}: {shifted} {base}");
+        }
+    }
+
+    #[test]
+    fn exposure_ignores_black_lamps_and_order() {
+        let base = auto_exposure(picture(1.0));
+        let mut pixels = picture(1.0);
+        pixels.reverse();
+        assert_eq!(auto_exposure(pixels.iter().copied()), base);
+        // Half of the picture black; a lamp in one of fifty pixels.
+        pixels.extend([Rgb::BLACK; 10_000]);
+        assert_eq!(auto_exposure(pixels.iter().copied()), base);
+        pixels.extend([Rgb::splat(1e6); 200]);
+        assert!((auto_exposure(pixels) - base).abs() < 0.3);
+        assert_eq!(auto_exposure([Rgb::BLACK; 9]), 0.0);
+        assert_eq!(auto_exposure([Rgb::splat(0.18)]), 0.0);
+    }
 }

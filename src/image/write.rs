@@ -52,7 +52,7 @@ pub fn write_hdr(path: &Path, pixels: &[Rgb], width: u32, height: u32) -> Result
 fn nearest_rgbe(pixel: Rgb) -> Rgb {
     // The largest value that the format holds with a mantissa of 255.
     const MAX: f32 = 1.69e38;
-    let pixel = pixel.map(|c| c.max(0.0).min(MAX));
+    let pixel = pixel.map(|c| if c > 0.0 { c.min(MAX) } else { 0.0 });
     let max = pixel.max_channel();
     if max < f32::MIN_POSITIVE {
         return Rgb::BLACK;

@@ -3,11 +3,10 @@
 //! Nothing is decoded here: a request says what to decode and which line to blame when that fails.
 
 use crate::error::Location;
+use crate::image::ColorSpace;
 use crate::scene::ImageId;
 use std::collections::HashMap;
 use std::path::PathBuf;
-
-pub use crate::image::ColorSpace;
 
 /// An image that some material needs.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,6 +4,8 @@
 //! every dropped part, or an error; never a panic. Images are asked for here ([`ImageRequest`]) and
 //! decoded elsewhere. Must not know how light is transported, only what the files mean.
 
+mod environment;
+mod fingerprint;
 mod image_request;
 mod line_filter;
 mod mtl;
@@ -18,6 +20,42 @@ mod obj_read;
 mod paths;
 mod warning_list;
 
-pub use image_request::{ColorSpace, ImageRequest, ImageTable};
+pub use crate::image::ColorSpace;
+pub use environment::add_environment_image;
+pub use fingerprint::fingerprint;
+pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;
 pub use obj::{LoadedModel, load_obj};
+
+/// temp
+pub fn load_scene(path: &std::path::Path) -> crate::error::Result<crate::scene::Scene> {
+    use crate::scene::*;
+    let loaded = load_obj(path)?;
+    let mut warnings = loaded.warnings;
+    let images = loaded
+        .images
+        .iter()
+        .map(|r| {
+            std::sync::Arc::new(crate::image::read(&r.path, r.color_space).unwrap_or_else(|e| {
+                warnings.push(crate::error::Warning {
+                    location: Some(r.location.clone()),
+                    message: e.to_string(),
+                });
+                crate::image::Image::missing()
+            }))
+        })
+        .collect();
+    Ok(Scene {
+        models: vec![loaded.model],
+        placements: vec![Placement {
+            model: ModelId(0),
+            world_from_object: crate::math::DAffine3::IDENTITY,
+            material_override: None,
+        }],
+        materials: loaded.materials,
+        images,
+        warnings,
+        inputs: loaded.inputs,
+        ..Scene::default()
+    })
+}

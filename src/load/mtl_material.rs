@@ -20,12 +20,13 @@
 //! - `illum` 3 and above trace reflections, which the manual defines as sharp whatever `Ns` shapes the
 //!   highlight of lamps; only exponents below 100, which no one gives to a clear thing, make them rough.
 
-use super::image_request::{ColorSpace, ImageTable};
+use super::image_request::ImageTable;
 use super::mtl::MtlRecord;
 use super::mtl_texture::TextureStatement;
 use super::paths::{Found, find_file};
 use super::warning_list::WarningList;
 use crate::error::Location;
+use crate::image::ColorSpace;
 use crate::math::{Rgb, fun};
 use crate::scene::{
     Channel, ColorInput, Emission, Material, NormalInput, ScalarInput, Surface, TextureReference,

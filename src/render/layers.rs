@@ -4,10 +4,11 @@
 //! the mean over the first samples.
 
 use super::thread_pool;
-use crate::accel::{AcceptAll, Accelerator, HitFilter};
+use crate::accel::{Accelerator, AcceptAll, HitFilter};
 use crate::error::Result;
 use crate::film::Region;
 use crate::geometry::NONE;
+use crate::image::Samples;
 use crate::math::{Rgb, Vec3};
 use crate::trace::{FirstHit, Tracer, first_hit};
 use crate::world::CutOuts;
@@ -26,9 +27,9 @@ pub enum Aov {
     Position,
     /// Texture coordinates.
     Uv,
-    /// Triangle number in its mesh; -1 where nothing is hit.
+    /// Numbers of the instance, the mesh and the triangle; all ones where there is none.
     Primitive,
-    /// Material number; -1 where nothing is hit.
+    /// Number of the material; all ones where nothing is hit.
     Material,
     /// Samples taken.
     Samples,
@@ -106,36 +107,43 @@ fn run<A: Accelerator, F: HitFilter>(
 impl Layers {
     /// The channels of a layer that the camera rays give: (channel name, values row-major). `Samples` and
     /// `Variance` are the film's and have none here.
-    pub fn channels(&self, aov: Aov) -> Vec<(&'static str, Vec<f32>)> {
-        let of = |f: &dyn Fn(&FirstHit) -> f32, miss: f32| -> Vec<f32> {
-            self.hits.iter().map(|hit| hit.as_ref().map_or(miss, f)).collect()
-        };
-        let xyz = |f: fn(&FirstHit) -> Vec3| {
-            vec![
-                ("X", of(&|h| f(h).x, 0.0)),
-                ("Y", of(&|h| f(h).y, 0.0)),
-                ("Z", of(&|h| f(h).z, 0.0)),
-            ]
-        };
+    pub fn channels(&self, aov: Aov) -> Vec<(&'static str, Samples)> {
         match aov {
-            Aov::Normal => xyz(|h| h.normal),
-            Aov::Position => xyz(|h| h.point),
-            Aov::Depth => vec![("Z", of(&|h| h.depth, f32::INFINITY))],
-            Aov::Uv => vec![("U", of(&|h| h.uv[0], 0.0)), ("V", of(&|h| h.uv[1], 0.0))],
+            Aov::Normal => self.xyz(|h| h.normal),
+            Aov::Position => self.xyz(|h| h.point),
+            Aov::Depth => vec![("Z", self.floats(f32::INFINITY, |h| h.depth))],
+            Aov::Uv => {
+                vec![("U", self.floats(0.0, |h| h.uv[0])), ("V", self.floats(0.0, |h| h.uv[1]))]
+            }
             Aov::Albedo => ["R", "G", "B"]
                 .into_iter()
                 .enumerate()
-                .map(|(c, name)| (name, self.albedo.iter().map(|a| a[c]).collect()))
+                .map(|(c, name)| (name, Samples::Float(self.albedo.iter().map(|a| a[c]).collect())))
                 .collect(),
-            Aov::Primitive => vec![("ID", of(&|h| h.id.primitive as f32, -1.0))],
-            Aov::Material => vec![
-                ("ID", of(&|h| h.material.0 as f32, -1.0)),
-                (
-                    "INSTANCE",
-                    of(&|h| if h.id.instance == NONE { -1.0 } else { h.id.instance as f32 }, -1.0),
-                ),
+            Aov::Primitive => vec![
+                ("geometry", self.ids(|h| h.id.geometry)),
+                ("instance", self.ids(|h| h.id.instance)),
+                ("primitive", self.ids(|h| h.id.primitive)),
             ],
+            Aov::Material => vec![("id", self.ids(|h| h.material.0))],
             Aov::Samples | Aov::Variance => Vec::new(),
         }
+    }
+
+    fn floats(&self, miss: f32, of: impl Fn(&FirstHit) -> f32) -> Samples {
+        Samples::Float(self.hits.iter().map(|hit| hit.as_ref().map_or(miss, &of)).collect())
+    }
+
+    fn xyz(&self, of: impl Fn(&FirstHit) -> Vec3) -> Vec<(&'static str, Samples)> {
+        vec![
+            ("X", self.floats(0.0, |h| of(h).x)),
+            ("Y", self.floats(0.0, |h| of(h).y)),
+            ("Z", self.floats(0.0, |h| of(h).z)),
+        ]
+    }
+
+    /// Identifiers; all ones where there is none.
+    fn ids(&self, of: impl Fn(&FirstHit) -> u32) -> Samples {
+        Samples::Uint(self.hits.iter().map(|hit| hit.as_ref().map_or(NONE, &of)).collect())
     }
 }

@@ -10,11 +10,11 @@ mod non_finite;
 pub use layers::{Aov, Layers, render_layers};
 pub use non_finite::{NonFinite, NonFiniteSample};
 
-use crate::accel::{AcceptAll, Accelerator, HitFilter};
+use crate::accel::{Accelerator, AcceptAll, HitFilter};
 use crate::error::{Error, Result};
 use crate::film::{Film, Region};
 use crate::ledger::Ledger;
-use crate::trace::{Block, Tracer, Wavefront};
+use crate::trace::{Block, PixelSample, Tracer, Wavefront};
 use crate::world::CutOuts;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -68,6 +68,25 @@ pub fn render<A: Accelerator>(
     } else {
         run(tracer, &AcceptAll, job, progress)
     }
+}
+
+/// Traces sample number `sample` of every pixel of `region` again: what a render summed there.
+pub fn replay<A: Accelerator>(
+    tracer: &Tracer<'_, A>,
+    region: Region,
+    sample: u64,
+) -> Vec<PixelSample> {
+    let (start, end) = (region.start, region.end);
+    let block = Block { start, end, first_sample: sample, end_sample: sample + 1 };
+    let mut found = Vec::new();
+    let mut wavefront = Wavefront::new(region.pixels());
+    if tracer.world.has_cut_outs() {
+        let filter = CutOuts::new(tracer.world);
+        wavefront.run(tracer, &filter, &block, |s| found.push(*s));
+    } else {
+        wavefront.run(tracer, &AcceptAll, &block, |s| found.push(*s));
+    }
+    found
 }
 
 /// A pool of `threads` workers (0: one a core).
@@ -132,9 +151,12 @@ fn blocks(job: &RenderJob<'_>) -> Vec<Block> {
         // 1, 1, 2, 4, ... 32, 32, ...: a whole picture at once, then ever better ones.
         let size = first_sample.clamp(1, LARGEST_PASS);
         let end_sample = (first_sample + size).min(job.samples_per_pixel);
-        blocks.extend(
-            tiles.iter().map(|t| Block { start: t.start, end: t.end, first_sample, end_sample }),
-        );
+        blocks.extend(tiles.iter().map(|t| Block {
+            start: t.start,
+            end: t.end,
+            first_sample,
+            end_sample,
+        }));
         first_sample = end_sample;
     }
     blocks

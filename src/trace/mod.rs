@@ -93,11 +93,16 @@ impl<A: Accelerator> Tracer<'_, A> {
         let sampler = self.sampler.path(pixel[0], pixel[1], sample);
         let (offset, weight) = self.filter.sample(sampler.two(Dimension::Film));
         let film = [0, 1].map(|k| pixel[k] as f32 + 0.5 + offset[k]);
-        let lens =
-            if self.camera.needs_lens() { sampler.two(Dimension::Lens) } else { [0.5; 2] };
+        let lens = if self.camera.needs_lens() { sampler.two(Dimension::Lens) } else { [0.5; 2] };
         let mut start = self.camera.ray(film, lens);
         start.ray.id = sampler.ray_id(0, RayKind::Path as u32);
-        CameraStart { sampler, weight, ray: start.ray, spread: start.spread, width: start.initial_width }
+        CameraStart {
+            sampler,
+            weight,
+            ray: start.ray,
+            spread: start.spread,
+            width: start.initial_width,
+        }
     }
 }
 

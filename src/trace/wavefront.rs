@@ -150,8 +150,11 @@ impl Wavefront {
             if !hit.is_hit() {
                 if !(tracer.hide_background && path.bounce == 0) {
                     for (radiance, pdf) in tracer.world.lights.at_infinity(path.ray.direction) {
-                        let weight =
-                            if path.is_delta { 1.0 } else { power_heuristic(path.pdf_solid_angle, pdf) };
+                        let weight = if path.is_delta {
+                            1.0
+                        } else {
+                            power_heuristic(path.pdf_solid_angle, pdf)
+                        };
                         path.radiance += path.throughput * radiance * weight;
                     }
                 }

@@ -142,7 +142,7 @@ impl World {
     /// Height differences per unit of texture coordinate, over half a texel or the footprint.
     fn height_gradient(&self, texture: &TextureReference, at: &SurfaceInteraction) -> (f32, f32) {
         let map = &self.textures[texture.image.index()];
-        let [width, height] = map.size().map(|n| n as f32);
+        let [width, height] = [map.image().width(), map.image().height()].map(|n| n as f32);
         let uv = [0, 1].map(|k| at.uv[k] * texture.scale[k] + texture.offset[k]);
         let footprint = at.footprint * texture.scale[0].abs().max(texture.scale[1].abs());
         let step = [(0.5 / width).max(0.5 * footprint), (0.5 / height).max(0.5 * footprint)];

@@ -167,8 +167,7 @@ fn sample_emitter(
     }
     let uv = world.uv(emitter.id, u, v);
     let emission = world.material(emitter.material).emission?;
-    let radiance =
-        world.color(&emission.radiance, uv, 0.0) * world.opacity(emitter.material, uv);
+    let radiance = world.color(&emission.radiance, uv, 0.0) * world.opacity(emitter.material, uv);
     // The segment ends on the side of the light that faces the point.
     let offset = offset_distance(on_light, &emitter.vertices.map(Vec3::as_dvec3), 0.0);
     let end = on_light - normal * offset.copysign(cos_theta);

@@ -3,7 +3,9 @@
 use super::{SurfaceInteraction, World};
 use crate::bsdf::{Bsdf, Lambert};
 use crate::math::Rgb;
-use crate::scene::{Channel, ColorInput, Material, MaterialId, ScalarInput, Surface, TextureReference};
+use crate::scene::{
+    Channel, ColorInput, Material, MaterialId, ScalarInput, Surface, TextureReference,
+};
 use crate::texture::{MipMap, Wrap};
 
 /// Below this roughness a dielectric is smooth: the highlight is narrower than any light or pixel.
@@ -102,7 +104,7 @@ pub(super) fn wrap_of(texture: &TextureReference) -> Wrap {
 /// that its triangles need no filter.
 pub(super) fn drop_alpha_of_opaque_images(material: &mut Material, textures: &[MipMap]) {
     if let Some((texture, Channel::Alpha)) = material.opacity.texture {
-        if !textures[texture.image.index()].has_alpha() {
+        if !textures[texture.image.index()].image().has_alpha() {
             material.opacity.texture = None;
         }
     }

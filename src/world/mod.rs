@@ -13,10 +13,11 @@ pub use cut_out::CutOuts;
 pub use interaction::SurfaceInteraction;
 pub use lights::{LightToSample, Lights};
 
+use crate::camera::{Camera, View};
 use crate::error::{Error, Result, Warning};
 use crate::geometry::{Aabb, Geometry, NONE, PrimitiveId};
 use crate::math::DVec3;
-use crate::scene::{Environment, Material, MaterialId, Scene};
+use crate::scene::{self, Environment, Material, MaterialId, Projection, Scene};
 use crate::texture::MipMap;
 use place::SurfaceMesh;
 use std::sync::Arc;
@@ -85,13 +86,33 @@ impl World {
             scene.environment = Some(DEFAULT_SKY);
             warnings.push(Warning {
                 location: None,
-                message: "the scene has no light of its own: lit by a clear sky (set one with --env)"
-                    .into(),
+                message:
+                    "the scene has no light of its own: lit by a clear sky (set one with --env)"
+                        .into(),
             });
         }
         world.lights = Lights::compile(&world, &scene)?;
         world.warnings = warnings;
         Ok(world)
+    }
+
+    /// A camera of the scene, made relative to the world's origin.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] when its numbers make no camera.
+    pub fn camera(&self, camera: &scene::Camera, size: [u32; 2]) -> Result<Camera> {
+        let origin = self.origin;
+        let view = View { from: camera.from - origin, to: camera.to - origin, up: camera.up };
+        match camera.projection {
+            Projection::Perspective { vertical_fov } => {
+                Camera::perspective(&view, size, vertical_fov)
+            }
+            Projection::ThinLens { vertical_fov, lens_radius, focus_distance } => {
+                Camera::thin_lens(&view, size, vertical_fov, lens_radius, focus_distance)
+            }
+            Projection::Orthographic { height } => Camera::orthographic(&view, size, height),
+            Projection::Panoramic => Camera::panoramic(&view, size),
+        }
     }
 
     /// Whether hit filters must be asked at all.

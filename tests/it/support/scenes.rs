@@ -6,13 +6,13 @@ use glint::accel::embree::EmbreeAccelerator;
 use glint::accel::{AcceptAll, HitFilter};
 use glint::camera::{Camera, View};
 use glint::film::{Pixels, Region};
-use glint::filter::FilterSampler;
-use glint::math::{DAffine3, DVec3, Rgb};
+use glint::filter::{Filter, FilterKind, FilterSampler};
+use glint::math::{DAffine3, DMat3, DVec3, Rgb};
 use glint::render::{RenderJob, Rendered, render};
 use glint::sampling::{Sampler, SamplerKind};
 use glint::scene::{
-    ColorInput, Emission, Environment, Material, MaterialId, MeshData, Model, ModelId, Placement,
-    Scene, Surface,
+    ColorInput, Emission, Environment, Light, Material, MaterialId, MeshData, Model, ModelId,
+    Placement, ScalarInput, Scene, Surface,
 };
 use glint::trace::{Block, PixelSample, Tracer, Wavefront, naive};
 use glint::world::{CutOuts, World};
@@ -72,7 +72,14 @@ impl Builder {
     }
 
     /// A closed sphere of 2 n (n - 1) triangles, winding outward, with smooth normals if asked for.
-    pub(crate) fn sphere(&mut self, center: [f32; 3], radius: f32, n: u32, smooth: bool, m: MaterialId) {
+    pub(crate) fn sphere(
+        &mut self,
+        center: [f32; 3],
+        radius: f32,
+        n: u32,
+        smooth: bool,
+        m: MaterialId,
+    ) {
         let mut mesh = sphere_mesh(radius, n, smooth, m);
         for p in &mut mesh.positions {
             (0..3).for_each(|k| p[k] += center[k]);
@@ -166,7 +173,7 @@ impl Shot {
         let accelerator =
             EmbreeAccelerator::build(world.geometry.clone(), 2).expect("embree builds");
         let camera = self.camera(world);
-        let filter = FilterSampler::new(glint::filter::Filter::Box { radius: 0.5 });
+        let filter = FilterSampler::new(Filter { kind: FilterKind::Box, radius: 0.5 });
         f(&Tracer {
             world,
             accelerator: &accelerator,
@@ -211,7 +218,11 @@ impl Shot {
 
     /// The same paths by the naive integrator.
     pub(crate) fn naive_samples(&self, world: &World) -> Vec<Rgb> {
-        fn all<F: HitFilter>(shot: &Shot, tracer: &Tracer<'_, EmbreeAccelerator>, f: &F) -> Vec<Rgb> {
+        fn all<F: HitFilter>(
+            shot: &Shot,
+            tracer: &Tracer<'_, EmbreeAccelerator>,
+            f: &F,
+        ) -> Vec<Rgb> {
             Region::full(shot.size)
                 .iter()
                 .flat_map(|p| (0..shot.spp).map(move |s| naive::radiance(tracer, f, p, s)))
@@ -253,4 +264,90 @@ pub(crate) fn cornell() -> Builder {
 /// A view into [`cornell`].
 pub(crate) fn cornell_shot(size: [u32; 2], spp: u64) -> Shot {
     Shot::new([0.0, 1.0, 4.8], [0.0, 1.0, 0.0], 30.0, size, spp)
+}
+
+/// One of everything: every surface, cut-outs, instances, and every kind of light.
+pub(crate) fn zoo() -> Builder {
+    let mut b = Builder::default();
+    let c = |r, g, b| ColorInput::constant(Rgb::new(r, g, b));
+    let n = ScalarInput::constant;
+    let floor = b.material(Surface::OrenNayar { albedo: c(0.5, 0.5, 0.45), sigma: 0.5 });
+    b.quad([-5.0, 0.0, -5.0], [0.0, 0.0, 10.0], [10.0, 0.0, 0.0], floor);
+    let glass = |roughness, absorption| Surface::Dielectric {
+        eta: 1.5,
+        roughness: n(roughness),
+        absorption,
+        transmittance: Rgb::WHITE,
+        thin: false,
+    };
+    let surfaces = [
+        Surface::Lambert { albedo: c(0.7, 0.3, 0.2) },
+        Surface::Mirror { reflectance: c(0.9, 0.9, 0.9) },
+        glass(0.0, Rgb::new(0.1, 0.5, 1.0)),
+        glass(0.4, Rgb::BLACK),
+        Surface::Conductor {
+            eta: Rgb::new(0.2, 0.9, 1.1),
+            k: Rgb::new(3.9, 2.4, 2.2),
+            roughness: n(0.4),
+            anisotropy: 0.3,
+        },
+        Surface::Plastic { albedo: c(0.1, 0.3, 0.7), eta: 1.5, roughness: n(0.2) },
+        Surface::Principled {
+            base_color: c(0.8, 0.6, 0.1),
+            metallic: n(0.5),
+            roughness: n(0.3),
+            specular: c(0.04, 0.04, 0.04),
+            anisotropy: 0.0,
+            clearcoat: 0.5,
+            clearcoat_roughness: 0.1,
+            sheen: 0.3,
+        },
+    ];
+    for (i, surface) in surfaces.into_iter().enumerate() {
+        let m = b.material(surface);
+        let x = i as f32 - 3.0;
+        b.sphere([x, 0.45, 0.2 * x], 0.45, 12, i % 2 == 0, m);
+    }
+    // Half-covered quads in front, as instances of one model.
+    let leaf = b.lambert(0.2, 0.6, 0.2);
+    b.scene.materials[leaf.index()].opacity = n(0.5);
+    b.quad([-0.4, 0.0, 0.0], [0.8, 0.0, 0.0], [0.0, 0.8, 0.0], leaf);
+    let model = b.scene.placements.pop().expect("the quad was placed").model;
+    for i in 0..5 {
+        let at = DVec3::new(f64::from(i) * 1.2 - 2.4, 0.0, 1.5);
+        let turn =
+            DMat3::from_cols(DVec3::new(0.8, 0.0, -0.6), DVec3::Y, DVec3::new(0.6, 0.0, 0.8));
+        b.place(model, DAffine3 { matrix3: turn, translation: at });
+    }
+    let lamp = b.emitter(0.0, Rgb::new(8.0, 6.0, 4.0));
+    b.quad([-1.0, 3.0, -1.0], [1.0, 0.0, 0.0], [0.0, 0.2, 1.0], lamp);
+    let position = DVec3::new(2.0, 3.0, 2.0);
+    b.scene.lights = vec![
+        Light::Point { position, intensity: Rgb::splat(3.0) },
+        Light::Spot {
+            position,
+            direction: -position,
+            intensity: Rgb::splat(20.0),
+            outer_angle: 30.0,
+            inner_angle: 10.0,
+        },
+        Light::Directional {
+            direction: DVec3::new(1.0, -1.0, 0.5),
+            irradiance: Rgb::splat(1.0),
+            angular_diameter: 3.0,
+        },
+    ];
+    b.scene.environment = Some(Environment::Sky {
+        elevation: 30.0,
+        azimuth: 45.0,
+        turbidity: 3.0,
+        ground_albedo: Rgb::splat(0.3),
+        scale: 0.5,
+    });
+    b
+}
+
+/// A view of [`zoo`].
+pub(crate) fn zoo_shot(size: [u32; 2], spp: u64) -> Shot {
+    Shot::new([0.0, 2.0, 8.0], [0.0, 0.6, 0.0], 35.0, size, spp)
 }

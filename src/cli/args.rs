@@ -1,0 +1,187 @@
+//! What can be said on the command line, as it was said: nothing is done while parsing.
+
+use crate::math::{DVec3, Rgb};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// A path tracer for large OBJ scenes on Embree.
+#[derive(Debug, Parser)]
+#[command(name = "glint", version, arg_required_else_help = true)]
+pub(super) struct Glint {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Renders an OBJ model or a TOML scene to EXR, PNG or HDR.
+    #[command(after_help = RENDER_EXAMPLES)]
+    Render(Box<Render>),
+}
+
+const RENDER_EXAMPLES: &str = "\
+Examples:
+  glint render model.obj
+      MODEL.exr and MODEL.png in this folder, framed and lit automatically
+  glint render model.obj -o out.png --size 1920x1080 --spp 256 --env sky:30,120
+  glint render scene.toml -o out.exr --aov normal,albedo,depth --stats stats.json
+  glint render model.obj --camera-from 3,2,5 --camera-to 0,1,0 --fov 35 --env studio.hdr
+  glint render model.obj --override-material diffuse:0.7,0.7,0.7 --env constant:1,1,1";
+
+/// `glint render`.
+#[derive(Debug, Args)]
+pub(super) struct Render {
+    /// Scene file (.toml) or model (.obj)
+    pub(super) scene: PathBuf,
+
+    /// Image to write, .exr, .png or .hdr; may be repeated [default: SCENE.exr and SCENE.png here]
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    pub(super) output: Vec<PathBuf>,
+    /// Extra layers for the EXR: normal, albedo, depth, position, uv, primitive, material, samples, variance
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', help_heading = "Output")]
+    pub(super) aov: Vec<String>,
+    /// Exposure of PNG files in stops [default: automatic]
+    #[arg(long, value_name = "EV", allow_negative_numbers = true, help_heading = "Output")]
+    pub(super) exposure: Option<f32>,
+    /// Tone map of PNG files: none, aces, agx or reinhard [default: agx]
+    #[arg(long, value_name = "NAME", help_heading = "Output")]
+    pub(super) tonemap: Option<String>,
+    /// Hide the environment from the camera; PNG files show this sRGB colour (0..1) instead
+    #[arg(long, value_name = "R,G,B", value_parser = rgb, help_heading = "Output")]
+    pub(super) background: Option<Rgb>,
+    /// Write statistics as JSON
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub(super) stats: Option<PathBuf>,
+    /// Print statistics as JSON to standard output
+    #[arg(long, help_heading = "Output")]
+    pub(super) json: bool,
+    /// Print nothing but errors
+    #[arg(short, long, help_heading = "Output")]
+    pub(super) quiet: bool,
+
+    /// Image size in pixels [default: 1280x720]
+    #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Image")]
+    pub(super) size: Option<[u32; 2]>,
+    /// Render only these pixels; x1 and y1 are exclusive
+    #[arg(long, value_name = "x0,y0,x1,y1", value_parser = crop, help_heading = "Image")]
+    pub(super) crop: Option<[u32; 4]>,
+    /// Samples per pixel [default: 128]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Image")]
+    pub(super) spp: Option<u64>,
+    /// Path segments: 1 shows emitters only, 2 adds direct light [default: unbounded]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Image")]
+    pub(super) max_depth: Option<u32>,
+    /// Sampler: sobol or independent [default: sobol]
+    #[arg(long, value_name = "NAME", help_heading = "Image")]
+    pub(super) sampler: Option<String>,
+    /// Pixel filter: box, tent, gaussian, mitchell, blackman-harris or lanczos [default: blackman-harris]
+    #[arg(long, value_name = "NAME[:RADIUS]", help_heading = "Image")]
+    pub(super) filter: Option<String>,
+    /// Random seed [default: 0]
+    #[arg(long, value_name = "N", help_heading = "Image")]
+    pub(super) seed: Option<u64>,
+
+    /// Camera of the scene file to use [default: the first]
+    #[arg(long, value_name = "NAME", help_heading = "Camera")]
+    pub(super) camera: Option<String>,
+    /// Camera position [default: framed automatically]
+    #[arg(long, value_name = "x,y,z", value_parser = point, allow_hyphen_values = true, help_heading = "Camera")]
+    pub(super) camera_from: Option<DVec3>,
+    /// Point in the middle of the picture
+    #[arg(long, value_name = "x,y,z", value_parser = point, allow_hyphen_values = true, help_heading = "Camera")]
+    pub(super) camera_to: Option<DVec3>,
+    /// Upward direction in the picture
+    #[arg(long, value_name = "x,y,z", value_parser = point, allow_hyphen_values = true, help_heading = "Camera")]
+    pub(super) camera_up: Option<DVec3>,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEGREES", help_heading = "Camera")]
+    pub(super) fov: Option<f64>,
+
+    /// Light around the scene: constant:R,G,B, sky:ELEVATION,AZIMUTH (degrees), or an .hdr or .exr file
+    #[arg(long, value_name = "ENV", help_heading = "Scene")]
+    pub(super) env: Option<String>,
+    /// Give every surface one material: diffuse:R,G,B
+    #[arg(long, value_name = "MATERIAL", help_heading = "Scene")]
+    pub(super) override_material: Option<String>,
+    /// Which axis of the scene is up [default: y]
+    #[arg(long, value_enum, help_heading = "Scene")]
+    pub(super) up: Option<Up>,
+    /// Exit with 3 if anything in the scene had to be dropped or repaired
+    #[arg(long, help_heading = "Scene")]
+    pub(super) strict: bool,
+
+    /// Backend that finds what rays hit
+    #[arg(long, value_enum, default_value_t = Backend::Auto, help_heading = "Machine")]
+    pub(super) accel: Backend,
+    /// Threads to use; 0 is one a core
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Machine")]
+    pub(super) threads: usize,
+    /// Trace one sample of one pixel and print what it met
+    #[arg(long, value_name = "x,y,sample", value_parser = replay, help_heading = "Machine")]
+    pub(super) replay: Option<([u32; 2], u64)>,
+}
+
+/// Backends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Backend {
+    /// Debian's Embree
+    Embree,
+    /// The in-house BVH
+    Bvh,
+    /// The best that this build has
+    Auto,
+}
+
+/// Axes that can be up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Up {
+    /// +y
+    Y,
+    /// +z
+    Z,
+}
+
+/// `N` numbers separated by commas.
+pub(super) fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Result<[T; N], String> {
+    let parsed: Option<Vec<T>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    parsed
+        .and_then(|values| <[T; N]>::try_from(values).ok())
+        .ok_or_else(|| format!("expected {N} numbers separated by commas"))
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    let p = DVec3::from_array(numbers(text)?);
+    if p.is_finite() { Ok(p) } else { Err("the numbers must be finite".into()) }
+}
+
+/// Three finite numbers that are not negative.
+pub(super) fn rgb(text: &str) -> Result<Rgb, String> {
+    let c = numbers::<f32, 3>(text)?;
+    let valid = c.iter().all(|v| v.is_finite() && *v >= 0.0);
+    if valid { Ok(Rgb::from(c)) } else { Err("a colour is three numbers of at least 0".into()) }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 1280x720")?;
+    let side = |text: &str| match text.trim().parse::<u32>() {
+        Ok(n @ 1..=65_536) => Ok(n),
+        _ => Err(format!("`{text}` is not a number of pixels from 1 to 65536")),
+    };
+    Ok([side(width)?, side(height)?])
+}
+
+fn crop(text: &str) -> Result<[u32; 4], String> {
+    let [x0, y0, x1, y1] = numbers(text)?;
+    if x0 < x1 && y0 < y1 {
+        Ok([x0, y0, x1, y1])
+    } else {
+        Err("expected x0 < x1 and y0 < y1".into())
+    }
+}
+
+fn replay(text: &str) -> Result<([u32; 2], u64), String> {
+    let [x, y, sample] = numbers::<u64, 3>(text)?;
+    let side = |n: u64| u32::try_from(n).map_err(|_| format!("{n} is not a pixel"));
+    Ok(([side(x)?, side(y)?], sample))
+}

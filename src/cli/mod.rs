@@ -1,0 +1,34 @@
+//! The command line: words to jobs, jobs to exit codes. The only place that prints.
+//!
+//! Exit codes: 0 done; 1 failed; 2 wrong usage; 3 done, but something asked for was not met.
+
+mod args;
+mod output;
+mod render;
+mod report;
+mod select;
+
+use crate::error::Error;
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Done.
+const DONE: u8 = 0;
+/// Failed.
+const FAILED: u8 = 1;
+/// Wrong usage.
+const USAGE: u8 = 2;
+/// Done, but something that was asked for was not met.
+const NOT_MET: u8 = 3;
+
+/// Runs the command that the process was started with.
+pub fn main() -> ExitCode {
+    let args = args::Glint::parse();
+    let code = match args.command {
+        args::Command::Render(args) => render::run(&args),
+    };
+    ExitCode::from(code.unwrap_or_else(|error| {
+        report::error(&error);
+        if matches!(error, Error::Usage(_)) { USAGE } else { FAILED }
+    }))
+}

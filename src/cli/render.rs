@@ -1,0 +1,189 @@
+//! `glint render`: a scene file in, a picture out. The newcomer's page: the whole pipeline in order.
+
+use super::args::{Backend, Render};
+use super::output::{Outputs, Picture};
+use super::report::{self, Phases, Statistics};
+use super::select::{self, Settings};
+use super::{DONE, NOT_MET};
+use crate::accel::Accelerator;
+#[cfg(feature = "embree")]
+use crate::accel::embree::EmbreeAccelerator;
+use crate::camera::Camera;
+use crate::error::{Error, Result};
+use crate::film::Region;
+use crate::filter::FilterSampler;
+use crate::load;
+use crate::render::{RenderJob, Rendered, render, render_layers};
+use crate::sampling::Sampler;
+use crate::trace::{Tracer, Wavefront};
+use crate::world::World;
+use signal_hook::consts::TERM_SIGNALS;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Renders as told; the exit code.
+pub(super) fn run(args: &Render) -> Result<u8> {
+    let mut phases = Phases::default();
+    let stop = stop_flag()?;
+
+    // Files to a scene; what the command line says goes over what the file says.
+    let start = Instant::now();
+    let outputs = Outputs::check(&args.output, &args.scene)?;
+    let mut scene = load::load_scene(&args.scene)?;
+    select::override_scene(args, &mut scene)?;
+    let settings = Settings::resolve(args, &scene)?;
+    let inputs = load::fingerprint(&scene.inputs)?;
+    phases.load = start.elapsed().as_secs_f64();
+
+    // A scene to a world, and the camera in it.
+    let start = Instant::now();
+    let (cameras, up) = (std::mem::take(&mut scene.cameras), scene.up);
+    let world = World::compile(scene)?;
+    report::warnings(args, &world.warnings);
+    let (camera, description) = select::camera(args, &cameras, up, &world, settings.size)?;
+    report::choices(args, &settings, &description, &world, up);
+
+    // A world to an accelerator: the only place where a backend is chosen.
+    match backend(args.accel)? {
+        #[cfg(feature = "embree")]
+        Chosen::Embree => {
+            let embree = EmbreeAccelerator::build(world.geometry.clone(), args.threads)?;
+            phases.build = start.elapsed().as_secs_f64();
+            let name = ("embree", embree.version());
+            let job =
+                Job { args, settings: &settings, outputs: &outputs, stop: &stop, name, inputs };
+            finish(&job, &world, &embree, &camera, phases)
+        }
+    }
+}
+
+/// Backends that this build has.
+enum Chosen {
+    #[cfg(feature = "embree")]
+    Embree,
+}
+
+fn backend(wanted: Backend) -> Result<Chosen> {
+    match wanted {
+        #[cfg(feature = "embree")]
+        Backend::Embree | Backend::Auto => Ok(Chosen::Embree),
+        #[cfg(not(feature = "embree"))]
+        Backend::Embree => Err(Error::Usage("--accel embree: built without Embree".into())),
+        #[cfg(not(feature = "embree"))]
+        Backend::Auto => bvh_is_missing(),
+        Backend::Bvh => bvh_is_missing(),
+    }
+}
+
+fn bvh_is_missing() -> Result<Chosen> {
+    let message = "this version has no in-house BVH yet: build with feature `embree`".into();
+    Err(Error::Backend { backend: "bvh", message })
+}
+
+/// What does not depend on the backend's type.
+pub(super) struct Job<'a> {
+    pub(super) args: &'a Render,
+    pub(super) settings: &'a Settings,
+    pub(super) outputs: &'a Outputs,
+    pub(super) stop: &'a Arc<AtomicBool>,
+    pub(super) name: (&'static str, String),
+    pub(super) inputs: String,
+}
+
+/// A world and an accelerator to files and a summary.
+fn finish<A: Accelerator>(
+    job: &Job<'_>,
+    world: &World,
+    accelerator: &A,
+    camera: &Camera,
+    mut phases: Phases,
+) -> Result<u8> {
+    let settings = job.settings;
+    let filter = FilterSampler::new(settings.filter);
+    let tracer = Tracer {
+        world,
+        accelerator,
+        camera,
+        filter: &filter,
+        sampler: Sampler::new(settings.sampler, settings.seed),
+        max_depth: settings.max_depth,
+        hide_background: job.args.background.is_some(),
+    };
+    if let Some((pixel, sample)) = job.args.replay {
+        return replay(job, &tracer, pixel, sample);
+    }
+
+    // Paths to the film.
+    let (region, threads) = (settings.region, job.args.threads);
+    let render_job = RenderJob {
+        region,
+        samples_per_pixel: settings.samples_per_pixel,
+        threads,
+        batch: Wavefront::DEFAULT_BATCH,
+        stop: Some(job.stop),
+    };
+    let bar = report::progress(job.args, region.pixels() as u64 * settings.samples_per_pixel);
+    let rendered = render(&tracer, &render_job, &|paths| bar.inc(paths))?;
+    bar.finish_and_clear();
+    phases.render = rendered.seconds;
+    let layers = if settings.aovs.is_empty() || !job.outputs.has_exr() {
+        None
+    } else {
+        Some(render_layers(&tracer, region, settings.samples_per_pixel, threads)?)
+    };
+
+    // The film to files.
+    let start = Instant::now();
+    let pixels = rendered.film.develop();
+    let (files, exposure) = job.outputs.write(&Picture {
+        settings,
+        pixels: &pixels,
+        samples: rendered.film.samples().0 as f32,
+        layers: layers.as_ref(),
+        background: job.args.background,
+        metadata: report::metadata(job, &rendered, world),
+    })?;
+    phases.write = start.elapsed().as_secs_f64();
+
+    let statistics = Statistics::new(job, world, accelerator.build_stats(), &rendered, phases);
+    report::finished(job, &statistics, &rendered, &files, exposure)?;
+    Ok(exit_code(job, world, &rendered))
+}
+
+/// Done, or done but for something that was asked for.
+fn exit_code(job: &Job<'_>, world: &World, rendered: &Rendered) -> u8 {
+    let strict = job.args.strict && (!world.warnings.is_empty() || rendered.non_finite.count > 0);
+    if rendered.interrupted || strict { NOT_MET } else { DONE }
+}
+
+/// Traces one sample again and says what it met.
+fn replay<A: Accelerator>(
+    job: &Job<'_>,
+    tracer: &Tracer<'_, A>,
+    pixel: [u32; 2],
+    sample: u64,
+) -> Result<u8> {
+    let [width, height] = job.settings.size;
+    if pixel[0] >= width || pixel[1] >= height {
+        return Err(Error::Usage(format!("--replay: the image is {width}x{height}")));
+    }
+    let region = Region { start: pixel, end: [pixel[0] + 1, pixel[1] + 1] };
+    let found = crate::render::replay(tracer, region, sample);
+    report::replayed(job, tracer.world, &found);
+    Ok(DONE)
+}
+
+/// A flag that the first Ctrl-C sets; the second one ends the process with code 130.
+fn stop_flag() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let failed = |e| Error::Usage(format!("cannot handle signals: {e}"));
+    for &signal in TERM_SIGNALS {
+        // In this order: the second signal finds the flag set by the first.
+        signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone())
+            .map_err(failed)?;
+        signal_hook::flag::register(signal, stop.clone()).map_err(failed)?;
+    }
+    debug_assert!(!stop.load(Ordering::Relaxed));
+    Ok(stop)
+}

@@ -1,0 +1,35 @@
+//! The test for means: six standard errors, and proof that one percent would have been seen.
+//!
+//! False alarms: a correct mean of nearly normal samples leaves six standard errors with probability
+//! 2e-9; the binary makes fewer than 200 such comparisons, so all of them together stay below 1e-6.
+
+const SIGMAS: f64 = 6.0;
+/// Rounding of `f32` arithmetic along a path, relative: no statistics can be finer.
+const ROUNDING: f64 = 3e-5;
+
+/// Asserts that the mean of independent, identically distributed `samples` is `truth`, and that the same
+/// samples would have rejected a truth that is one percent off.
+pub(crate) fn assert_mean(what: &str, samples: impl IntoIterator<Item = f64>, truth: f64) {
+    assert_mean_power(what, samples, truth, 0.01);
+}
+
+/// As [`assert_mean`], where the error that must be seen is `power`, relative.
+pub(crate) fn assert_mean_power(
+    what: &str,
+    samples: impl IntoIterator<Item = f64>,
+    truth: f64,
+    power: f64,
+) {
+    let samples: Vec<f64> = samples.into_iter().collect();
+    let n = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / n;
+    let variance = samples.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+    let error = (variance / n).sqrt();
+    let rejects = |truth: f64| (mean - truth).abs() > SIGMAS * error + ROUNDING * truth.abs();
+    assert!(!rejects(truth), "{what}: mean {mean} +- {error}, truth {truth}");
+    // The mutated run: the same data against a truth that is off must fail.
+    for off in [1.0 - power, 1.0 + power] {
+        let wrong = truth * off;
+        assert!(rejects(wrong), "{what}: {mean} +- {error} cannot tell {truth} from {wrong}");
+    }
+}
