@@ -1,5 +1,7 @@
 //! OBJ files of every odd kind, against the slow parser of `support::reference_obj`.
 
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may unwrap, and so may its helpers")]
+
 use crate::support::reference_obj::{assert_same, parse};
 use glint::error::{Error, Result};
 use glint::load::{LoadedModel, load_obj};
