@@ -222,7 +222,10 @@ impl Wavefront {
             }
             let path = &self.slots[vertex.slot as usize];
             let bounce = path.bounce;
-            let select = path.sampler.one(Dimension::LightSelect { bounce });
+            let select = match lights.needs_choice() {
+                true => path.sampler.one(Dimension::LightSelect { bounce }),
+                false => 0.0,
+            };
             let position = path.sampler.two(Dimension::LightPosition { bounce });
             let Some(light) = lights.sample(tracer.world, vertex.at.point, select, position) else {
                 continue;

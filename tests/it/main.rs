@@ -1,6 +1,7 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
 mod accel;
+mod allocation;
 mod camera;
 mod cli;
 mod closed_forms;
