@@ -139,7 +139,7 @@ impl Context<'_> {
         (!radiance.value.is_black()).then_some(Emission { radiance })
     }
 
-    /// Coverage: `d` (or 1 - `Tr`) times `map_d`; without `map_d` the alpha of `map_Kd`, which `world` drops
+    /// Coverage: `d` (or 1 - `Tr`) times the red channel of `map_d`; without `map_d` the alpha of `map_Kd`, which `world` drops
     /// when the image has none. Of glass `d` says how clear it is, not how much of it is there.
     fn opacity(&mut self, r: &MtlRecord, diffuse: ColorInput) -> ScalarInput {
         let dissolve = r.dissolve.or(r.transparency.map(|t| 1.0 - t));

@@ -184,11 +184,12 @@ fn find_libraries(
     let folder = location.path.parent().unwrap_or(Path::new(""));
     let names = &statement.name;
     let is_missing = |found: &Found| matches!(found, Found::Missing(_));
+    let is_as_named = |found: &Found| matches!(found, Found::AsNamed(_));
     let mut found = vec![find_file(folder, names)];
-    if is_missing(&found[0]) {
+    if !is_as_named(&found[0]) {
         let parts: Vec<Found> =
             names.split_whitespace().map(|name| find_file(folder, name)).collect();
-        if !parts.iter().all(is_missing) {
+        if parts.iter().any(is_as_named) || is_missing(&found[0]) && !parts.iter().all(is_missing) {
             found = parts;
         }
     }

@@ -233,6 +233,7 @@ fn libraries_are_found_and_read_once() {
         ("mtllib b.mtl a.mtl b.mtl", ["a.mtl", "b.mtl"]),
         ("mtllib my lib.mtl\nmtllib \"b.mtl\"", ["my lib.mtl", "b.mtl"]),
         ("mtllib sub\\a.mtl\nmtllib ./b.mtl", ["sub/a.mtl", "b.mtl"]),
+        ("mtllib a.mtl ./b.mtl", ["a.mtl", "b.mtl"]),
     ] {
         let loaded = loaded_with(mtllib, &[(names[0], a), (names[1], b)]);
         assert!(loaded.warnings.is_empty(), "{mtllib}: {:?}", loaded.warnings);
