@@ -19,6 +19,7 @@ mod obj_polygon;
 mod obj_read;
 mod obj_scan;
 mod paths;
+mod scene_file;
 mod warning_list;
 
 pub use crate::image::ColorSpace;
@@ -27,36 +28,4 @@ pub use fingerprint::fingerprint;
 pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;
 pub use obj::{LoadedModel, load_obj};
-
-/// temp
-pub fn load_scene(path: &std::path::Path) -> crate::error::Result<crate::scene::Scene> {
-    use crate::scene::*;
-    let loaded = load_obj(path)?;
-    let mut warnings = loaded.warnings;
-    let images = loaded
-        .images
-        .iter()
-        .map(|r| {
-            std::sync::Arc::new(crate::image::read(&r.path, r.color_space).unwrap_or_else(|e| {
-                warnings.push(crate::error::Warning {
-                    location: Some(r.location.clone()),
-                    message: e.to_string(),
-                });
-                crate::image::Image::missing()
-            }))
-        })
-        .collect();
-    Ok(Scene {
-        models: vec![loaded.model],
-        placements: vec![Placement {
-            model: ModelId(0),
-            world_from_object: crate::math::DAffine3::IDENTITY,
-            material_override: None,
-        }],
-        materials: loaded.materials,
-        images,
-        warnings,
-        inputs: loaded.inputs,
-        ..Scene::default()
-    })
-}
+pub use scene_file::{did_you_mean, load_scene};

@@ -193,4 +193,33 @@ impl Material {
     pub fn default_grey() -> Self {
         Self::new("default", Surface::Lambert { albedo: ColorInput::constant(Rgb::splat(0.5)) })
     }
+
+    /// Calls `visit` on every texture of the material.
+    pub fn for_each_texture(&mut self, mut visit: impl FnMut(&mut TextureReference)) {
+        let (colors, scalars): (Vec<&mut ColorInput>, Vec<&mut ScalarInput>) =
+            match &mut self.surface {
+                Surface::Lambert { albedo } | Surface::OrenNayar { albedo, .. } => {
+                    (vec![albedo], vec![])
+                }
+                Surface::Mirror { reflectance } => (vec![reflectance], vec![]),
+                Surface::Dielectric { roughness, .. } | Surface::Conductor { roughness, .. } => {
+                    (vec![], vec![roughness])
+                }
+                Surface::Plastic { albedo, roughness, .. } => (vec![albedo], vec![roughness]),
+                Surface::Principled { base_color, metallic, roughness, specular, .. } => {
+                    (vec![base_color, specular], vec![metallic, roughness])
+                }
+            };
+        let emission = self.emission.as_mut().map(|emission| &mut emission.radiance);
+        for color in colors.into_iter().chain(emission) {
+            color.texture.iter_mut().for_each(&mut visit);
+        }
+        for scalar in scalars.into_iter().chain([&mut self.opacity]) {
+            scalar.texture.iter_mut().for_each(|(texture, _)| visit(texture));
+        }
+        match &mut self.normal {
+            Some(NormalInput::Map(texture) | NormalInput::Bump { texture, .. }) => visit(texture),
+            None => {}
+        }
+    }
 }

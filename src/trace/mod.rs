@@ -57,15 +57,14 @@ impl Block {
         width * height * (self.end_sample - self.first_sample)
     }
 
-    /// Pixel and sample of path number `n`: all samples of a pixel, then the next pixel.
+    /// Pixel and sample of every path: all samples of a pixel, then the next pixel.
     #[inline]
-    pub fn path(&self, n: u64) -> ([u32; 2], u64) {
-        let samples = self.end_sample - self.first_sample;
-        let (pixel, sample) = (n / samples, n % samples);
-        let width = u64::from(self.end[0] - self.start[0]);
-        let x = self.start[0] + (pixel % width) as u32;
-        let y = self.start[1] + (pixel / width) as u32;
-        ([x, y], self.first_sample + sample)
+    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], u64)> + use<> {
+        let Self { start, end, first_sample, end_sample } = *self;
+        (start[1]..end[1]).flat_map(move |y| {
+            (start[0]..end[0])
+                .flat_map(move |x| (first_sample..end_sample).map(move |sample| ([x, y], sample)))
+        })
     }
 }
 

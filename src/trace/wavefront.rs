@@ -80,13 +80,13 @@ impl Wavefront {
         block: &Block,
         mut sink: impl FnMut(&PixelSample),
     ) {
-        let mut next = 0;
+        let mut starts = block.iter();
         let mut clock = Clock::start();
         self.slots.clear();
         self.free.clear();
         self.active.clear();
         loop {
-            self.generate(tracer, block, &mut next, &mut clock);
+            self.generate(tracer, &mut starts, &mut clock);
             if self.active.is_empty() {
                 return;
             }
@@ -97,7 +97,7 @@ impl Wavefront {
             self.shadow(tracer, filter, &mut clock);
             self.scatter(tracer, &mut clock);
             self.roulette(&mut clock);
-            self.accumulate(block, &mut sink, &mut clock);
+            self.accumulate(&mut sink, &mut clock);
         }
     }
 
@@ -105,20 +105,22 @@ impl Wavefront {
     fn generate<A: Accelerator>(
         &mut self,
         tracer: &Tracer<'_, A>,
-        block: &Block,
-        next: &mut u64,
+        starts: &mut impl Iterator<Item = ([u32; 2], u64)>,
         clock: &mut Clock,
     ) {
         let before = self.active.len();
-        while self.active.len() < self.capacity && *next < block.paths() {
-            let (pixel, sample) = block.path(*next);
-            let path = Path::begin(&tracer.camera_ray(pixel, sample), *next);
-            *next += 1;
-            let slot = self.free.pop().unwrap_or_else(|| {
-                self.slots.push(path);
-                self.slots.len() as u32 - 1
-            });
-            self.slots[slot as usize] = path;
+        for (pixel, sample) in starts.take(self.capacity - before) {
+            let path = Path::begin(&tracer.camera_ray(pixel, sample), pixel, sample);
+            let slot = match self.free.pop() {
+                Some(slot) => {
+                    self.slots[slot as usize] = path;
+                    slot
+                }
+                None => {
+                    self.slots.push(path);
+                    self.slots.len() as u32 - 1
+                }
+            };
             self.active.push(slot);
         }
         let begun = self.active.len() - before;
@@ -309,18 +311,12 @@ impl Wavefront {
     }
 
     /// Hands finished paths over and frees their slots.
-    fn accumulate(
-        &mut self,
-        block: &Block,
-        sink: &mut impl FnMut(&PixelSample),
-        clock: &mut Clock,
-    ) {
+    fn accumulate(&mut self, sink: &mut impl FnMut(&PixelSample), clock: &mut Clock) {
         for &slot in &self.finished {
             let path = &self.slots[slot as usize];
-            let (pixel, sample) = block.path(path.number);
             sink(&PixelSample {
-                pixel,
-                sample,
+                pixel: path.pixel,
+                sample: path.sample,
                 radiance: path.radiance * path.weight,
                 coverage: path.coverage * path.weight,
                 bounces: path.bounce,

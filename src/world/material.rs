@@ -1,15 +1,15 @@
 //! Materials evaluated at a point: inputs times textures, then the BSDF's parameters.
 
 use super::{SurfaceInteraction, World};
-use crate::bsdf::{Bsdf, Lambert};
+use crate::bsdf::{
+    Bsdf, Conductor, Dielectric, Lambert, Mirror, OrenNayar, Plastic, Principled,
+    PrincipledParameters, RoughDielectric,
+};
 use crate::math::Rgb;
 use crate::scene::{
     Channel, ColorInput, Material, MaterialId, ScalarInput, Surface, TextureReference,
 };
 use crate::texture::{MipMap, Wrap};
-
-/// Below this roughness a dielectric is smooth: the highlight is narrower than any light or pixel.
-const SMOOTH: f32 = 0.02;
 
 impl World {
     /// The BSDF at an interaction, in its shading frame, for a ray from outside or inside.
@@ -18,7 +18,43 @@ impl World {
         let scalar = |input: &ScalarInput| self.scalar(input, at.uv, at.footprint);
         match &self.material(at.material).surface {
             Surface::Lambert { albedo } => Bsdf::Lambert(Lambert::new(color(albedo))),
-            _ => Bsdf::Lambert(Lambert::new(Rgb::splat(0.5))),
+            Surface::OrenNayar { albedo, sigma } => {
+                Bsdf::OrenNayar(OrenNayar::new(color(albedo), *sigma))
+            }
+            Surface::Mirror { reflectance } => Bsdf::Mirror(Mirror::new(color(reflectance))),
+            Surface::Dielectric { eta, roughness, transmittance, thin, .. } => {
+                let roughness = scalar(roughness);
+                let side = at.entering;
+                match RoughDielectric::new(*eta, side, *transmittance, *thin, roughness) {
+                    Some(rough) => Bsdf::RoughDielectric(rough),
+                    None => Bsdf::Dielectric(Dielectric::new(*eta, side, *transmittance, *thin)),
+                }
+            }
+            Surface::Conductor { eta, k, roughness, anisotropy } => {
+                Bsdf::Conductor(Conductor::new(*eta, *k, scalar(roughness), *anisotropy))
+            }
+            Surface::Plastic { albedo, eta, roughness } => {
+                Bsdf::Plastic(Plastic::new(color(albedo), *eta, scalar(roughness)))
+            }
+            Surface::Principled {
+                base_color,
+                metallic,
+                roughness,
+                specular,
+                anisotropy,
+                clearcoat,
+                clearcoat_roughness,
+                sheen,
+            } => Bsdf::Principled(Principled::new(&PrincipledParameters {
+                base_color: color(base_color),
+                metallic: scalar(metallic),
+                roughness: scalar(roughness),
+                specular: color(specular),
+                anisotropy: *anisotropy,
+                clearcoat: *clearcoat,
+                clearcoat_roughness: *clearcoat_roughness,
+                sheen: *sheen,
+            })),
         }
     }
 

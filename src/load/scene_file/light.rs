@@ -1,0 +1,212 @@
+//! `[[light.KIND]]` and `[environment.KIND]`: light that does not come from surfaces.
+
+use super::source::{Source, exactly_one};
+use super::value::{
+    Color, ConeAngle, Degrees, Direction, Elevation, Factor, Fraction, NonNegative, OuterAngle,
+    Point, Turbidity,
+};
+use crate::error::Result;
+use crate::load;
+use crate::math::Rgb;
+use crate::scene::{Environment, Light, Scene};
+use serde::Deserialize;
+use std::ops::Range;
+use toml::Spanned;
+
+/// `[light]`: lists by kind.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct LightTables {
+    point: Vec<PointLight>,
+    spot: Vec<Spot>,
+    directional: Vec<Directional>,
+}
+
+/// `[[light.point]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PointLight {
+    position: Point,
+    intensity: Color<NonNegative>,
+}
+
+/// `[[light.spot]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Spot {
+    position: Point,
+    direction: Direction,
+    intensity: Color<NonNegative>,
+    outer_angle: OuterAngle,
+    inner_angle: Spanned<ConeAngle>,
+}
+
+/// `[[light.directional]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Directional {
+    direction: Direction,
+    irradiance: Color<NonNegative>,
+    #[serde(default = "point_like")]
+    angular_diameter: ConeAngle,
+}
+
+/// `[environment]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct EnvironmentTable {
+    constant: Option<Constant>,
+    image: Option<ImageTable>,
+    sky: Option<Sky>,
+}
+
+/// `[environment.constant]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Constant {
+    radiance: Color<NonNegative>,
+}
+
+/// `[environment.image]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ImageTable {
+    file: Spanned<String>,
+    #[serde(default = "one")]
+    scale: Color<NonNegative>,
+    #[serde(default = "unturned")]
+    rotation: Degrees,
+}
+
+/// `[environment.sky]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Sky {
+    elevation: Elevation,
+    azimuth: Degrees,
+    #[serde(default = "clear_day")]
+    turbidity: Turbidity,
+    #[serde(default = "dark_ground")]
+    ground_albedo: Color<Fraction>,
+    #[serde(default = "unscaled")]
+    scale: Factor,
+}
+
+const fn point_like() -> ConeAngle {
+    ConeAngle(0.0)
+}
+
+const fn one() -> Color<NonNegative> {
+    Color::new(Rgb::WHITE)
+}
+
+const fn unturned() -> Degrees {
+    Degrees(0.0)
+}
+
+const fn clear_day() -> Turbidity {
+    Turbidity(3.0)
+}
+
+const fn dark_ground() -> Color<Fraction> {
+    Color::new(Rgb::splat(0.2))
+}
+
+const fn unscaled() -> Factor {
+    Factor(1.0)
+}
+
+impl LightTables {
+    /// The lights for `scene`: points, then spots, then directional ones, each in the order of the file.
+    ///
+    /// # Errors
+    /// For a spot whose inner cone is wider than its outer one.
+    pub(super) fn lights(&self, source: Source) -> Result<Vec<Light>> {
+        let points = self.point.iter().map(|light| Ok(light.light()));
+        let spots = self.spot.iter().map(|light| light.light(source));
+        let directional = self.directional.iter().map(|light| Ok(light.light()));
+        points.chain(spots).chain(directional).collect()
+    }
+}
+
+impl PointLight {
+    fn light(&self) -> Light {
+        Light::Point { position: self.position.vector(), intensity: self.intensity.rgb }
+    }
+}
+
+impl Spot {
+    fn light(&self, source: Source) -> Result<Light> {
+        let (outer_angle, inner_angle) = (self.outer_angle.0, self.inner_angle.get_ref().0);
+        if inner_angle > outer_angle {
+            let message = format!(
+                "`inner_angle` {inner_angle} is larger than `outer_angle` {outer_angle}: swap them"
+            );
+            return Err(source.error(self.inner_angle.span(), message));
+        }
+        Ok(Light::Spot {
+            position: self.position.vector(),
+            direction: self.direction.0,
+            intensity: self.intensity.rgb,
+            outer_angle,
+            inner_angle,
+        })
+    }
+}
+
+impl Directional {
+    fn light(&self) -> Light {
+        Light::Directional {
+            direction: self.direction.0,
+            irradiance: self.irradiance.rgb,
+            angular_diameter: self.angular_diameter.0,
+        }
+    }
+}
+
+impl EnvironmentTable {
+    /// The environment for `scene`, to which its image is added.
+    ///
+    /// # Errors
+    /// When there is not exactly one kind, and when the image cannot be read.
+    pub(super) fn environment(
+        &self,
+        span: Range<usize>,
+        source: Source,
+        scene: &mut Scene,
+    ) -> Result<Environment> {
+        let kind = exactly_one([
+            ("constant", self.constant.as_ref().map(|table| Ok(table.environment()))),
+            ("image", self.image.as_ref().map(|table| table.environment(source, scene))),
+            ("sky", self.sky.as_ref().map(|table| Ok(table.environment()))),
+        ]);
+        kind.map_err(|message| source.error(span, format!("`environment` {message}")))?
+    }
+}
+
+impl Constant {
+    fn environment(&self) -> Environment {
+        Environment::Constant { radiance: self.radiance.rgb }
+    }
+}
+
+impl ImageTable {
+    fn environment(&self, source: Source, scene: &mut Scene) -> Result<Environment> {
+        let path = source.resolve(self.file.get_ref());
+        let image = load::add_environment_image(scene, &path)
+            .map_err(|error| source.error(self.file.span(), error.to_string()))?;
+        Ok(Environment::Image { image, scale: self.scale.rgb, rotation: self.rotation.0 })
+    }
+}
+
+impl Sky {
+    fn environment(&self) -> Environment {
+        Environment::Sky {
+            elevation: self.elevation.0,
+            azimuth: self.azimuth.0,
+            turbidity: self.turbidity.0,
+            ground_albedo: self.ground_albedo.rgb,
+            scale: self.scale.0,
+        }
+    }
+}

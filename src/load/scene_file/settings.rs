@@ -1,0 +1,65 @@
+//! `[film]` and `[render]`: what the command line can override.
+
+use super::source::Source;
+use super::value::{Count, Finite, List};
+use crate::error::Result;
+use crate::filter::Filter;
+use crate::image::ToneMap;
+use crate::sampling::SamplerKind;
+use crate::scene::SceneSettings;
+use serde::Deserialize;
+use toml::Spanned;
+
+/// `[film]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct FilmTable {
+    size: Option<List<Count<65536>, 2>>,
+    filter: Option<Spanned<String>>,
+    exposure: Option<Finite>,
+    tonemap: Option<Spanned<String>>,
+}
+
+/// `[render]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RenderTable {
+    spp: Option<Count<{ i64::MAX as u64 }>>,
+    max_depth: Option<Count<{ u32::MAX as u64 }>>,
+    sampler: Option<Spanned<String>>,
+    seed: Option<u64>,
+}
+
+/// The settings of both tables.
+///
+/// # Errors
+/// For an unknown filter, tone map or sampler.
+pub(super) fn settings(
+    film: &FilmTable,
+    render: &RenderTable,
+    source: Source,
+) -> Result<SceneSettings> {
+    let samplers = SamplerKind::ALL.map(|sampler| sampler.0);
+    if let Some(name) = &render.sampler
+        && !samplers.contains(&name.get_ref().as_str())
+    {
+        return Err(source.unknown_name(name.span(), "sampler", name.get_ref(), samplers));
+    }
+    if let Some(name) = &film.filter {
+        Filter::parse(name.get_ref()).map_err(|e| source.error(name.span(), e.to_string()))?;
+    }
+    if let Some(name) = &film.tonemap {
+        ToneMap::parse(name.get_ref()).map_err(|e| source.error(name.span(), e.to_string()))?;
+    }
+    let text = |name: &Option<Spanned<String>>| name.as_ref().map(|name| name.get_ref().clone());
+    Ok(SceneSettings {
+        size: film.size.map(|size| size.0.map(|count| count.0 as u32)),
+        samples_per_pixel: render.spp.map(|count| count.0),
+        max_depth: render.max_depth.map(|count| count.0 as u32),
+        sampler: text(&render.sampler),
+        seed: render.seed,
+        filter: text(&film.filter),
+        exposure: film.exposure.map(|stops| stops.0),
+        tonemap: text(&film.tonemap),
+    })
+}

@@ -1,0 +1,182 @@
+//! The text of a scene file, kept so that every error can quote the line that caused it.
+//!
+//! Turns byte spans of the TOML parser into lines, and the parser's messages into ones that say what
+//! to write instead. Knows nothing of what the keys mean.
+
+use crate::error::{Error, Location, Warning};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// A scene file's path and text.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    path: &'a Path,
+    text: &'a str,
+}
+
+impl<'a> Source<'a> {
+    /// The file `path`, whose contents are `text`.
+    pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
+        Self { path, text }
+    }
+
+    /// The line, from 1, on which `span` begins.
+    fn line(&self, span: &Range<usize>) -> usize {
+        let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
+        1 + before.iter().filter(|&&byte| byte == b'\n').count()
+    }
+
+    /// Where `span` begins.
+    pub(super) fn location(&self, span: &Range<usize>) -> Location {
+        Location::new(self.path, self.line(span))
+    }
+
+    /// An error about what stands at `span`.
+    pub(super) fn error(&self, span: Range<usize>, message: impl Into<String>) -> Error {
+        let line = self.line(&span);
+        let text = self.text.lines().nth(line - 1).unwrap_or_default();
+        Error::parse(self.path, line, text, message)
+    }
+
+    /// A warning about what stands at `span`.
+    pub(super) fn warning(&self, span: Range<usize>, message: impl Into<String>) -> Warning {
+        Warning { location: Some(self.location(&span)), message: message.into() }
+    }
+
+    /// An error about a name that is not among `known`; `what` is its kind ("material").
+    pub(super) fn unknown_name<'n>(
+        &self,
+        span: Range<usize>,
+        what: &str,
+        name: &str,
+        known: impl IntoIterator<Item = &'n str>,
+    ) -> Error {
+        self.error(span, unknown(what, name, known))
+    }
+
+    /// The path that `file` means: relative to the folder of the scene file.
+    pub(super) fn resolve(&self, file: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(file)
+    }
+
+    /// The parser's error with file and line, and with its message completed by what would be right.
+    pub(super) fn toml_error(&self, error: &toml::de::Error) -> Error {
+        let span = error.span().unwrap_or(0..0);
+        let message = error.message();
+        let message = if let Some(message) = unknown_key(message) {
+            message
+        } else if let Some(key) = between(message, "missing field `", "`") {
+            format!("missing key `{key}`: add it to this table")
+        } else if message.starts_with("duplicate key") {
+            let key = self.text.get(span.clone()).unwrap_or_default();
+            format!("`{key}` is defined twice: rename or remove one of them")
+        } else {
+            message.to_owned()
+        };
+        self.error(span, message)
+    }
+}
+
+/// What is wrong with a `name` that is not among `known`; `what` is its kind.
+pub(super) fn unknown<'n>(
+    what: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'n str>,
+) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    format!("unknown {what} `{name}`{}", advice(name, &known, "Known"))
+}
+
+/// The one of `kinds` that is given, or in words why it is not one.
+pub(super) fn exactly_one<T, const N: usize>(kinds: [(&str, Option<T>); N]) -> Result<T, String> {
+    let all = kinds.each_ref().map(|kind| kind.0);
+    let mut given: Vec<(&str, T)> =
+        kinds.into_iter().filter_map(|(name, kind)| Some((name, kind?))).collect();
+    match (given.pop(), given.is_empty()) {
+        (Some((_, kind)), true) => Ok(kind),
+        (None, _) => Err(format!("needs one of {}", quoted(&all))),
+        (Some((last, _)), false) => {
+            let mut names: Vec<&str> = given.iter().map(|kind| kind.0).collect();
+            names.push(last);
+            Err(format!("has {} at once: keep one of them", quoted(&names)))
+        }
+    }
+}
+
+/// serde's "unknown field `a`, expected one of `b`, `c`", with a suggestion.
+fn unknown_key(message: &str) -> Option<String> {
+    let rest = message.strip_prefix("unknown field `")?;
+    let (name, expected) = rest.rsplit_once("`, expected ").or_else(|| rest.split_once("`, "))?;
+    // The alternatives are what stands between pairs of backticks.
+    let allowed: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+    Some(format!("unknown key `{name}`{}", advice(name, &allowed, "Allowed here")))
+}
+
+/// What to write instead of `name`: the likeliest of `known` and the list of them all.
+fn advice(name: &str, known: &[&str], lead: &str) -> String {
+    let suggestion = did_you_mean(name, known.iter().copied())
+        .map_or(".".to_owned(), |known| format!("; did you mean `{known}`?"));
+    let list = if known.is_empty() { "none".to_owned() } else { quoted(known) };
+    format!("{suggestion} {lead}: {list}")
+}
+
+/// The names between backticks and commas; the first thirty of them.
+fn quoted(names: &[&str]) -> String {
+    const SHOWN: usize = 30;
+    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
+    let rest = names.len().saturating_sub(SHOWN);
+    let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+    shown.join(", ") + &more
+}
+
+/// What stands between `start` at the beginning of `text` and the next `end`.
+fn between<'t>(text: &'t str, start: &str, end: &str) -> Option<&'t str> {
+    text.strip_prefix(start)?.split_once(end).map(|found| found.0)
+}
+
+/// The name among `known` that `name` is likeliest to be a misspelling or a part of, if any is likely:
+/// at most a third of its letters are wrong, or one contains the other.
+pub fn did_you_mean<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    let name = name.to_lowercase();
+    let cost = |candidate: &str| {
+        let candidate = candidate.to_lowercase();
+        let distance = strsim::damerau_levenshtein(&name, &candidate);
+        let part = name.len().min(candidate.len()) >= 3
+            && (candidate.contains(&name) || name.contains(&candidate));
+        let close = distance <= (name.chars().count() / 3).max(1);
+        (close || part).then_some(if close { distance } else { 100 + distance })
+    };
+    known
+        .into_iter()
+        .filter_map(|candidate| Some((cost(candidate)?, candidate)))
+        .min()
+        .map(|best| best.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn suggestions_are_likely_ones_only() {
+        let known = ["vertical_fov", "lens_radius", "focus_distance"];
+        assert_eq!(did_you_mean("lens_radios", known), Some("lens_radius"));
+        assert_eq!(did_you_mean("FOV", known), Some("vertical_fov"));
+        assert_eq!(did_you_mean("focus_dist", known), Some("focus_distance"));
+        assert_eq!(did_you_mean("banana", known), None);
+        assert_eq!(did_you_mean("x", ["y"]), Some("y"));
+    }
+
+    #[test]
+    fn every_form_of_unknown_key_is_understood() {
+        let one = unknown_key("unknown field `fil`, expected `file`").unwrap();
+        assert_eq!(one, "unknown key `fil`; did you mean `file`? Allowed here: `file`");
+        let two = unknown_key("unknown field `q`, expected `ab` or `cd`").unwrap();
+        assert_eq!(two, "unknown key `q`. Allowed here: `ab`, `cd`");
+        let many = unknown_key("unknown field `a`b`, expected one of `x`, `y`, `z`").unwrap();
+        assert_eq!(many, "unknown key `a`b`. Allowed here: `x`, `y`, `z`");
+        let none = unknown_key("unknown field `q`, there are no fields").unwrap();
+        assert_eq!(none, "unknown key `q`. Allowed here: none");
+        assert_eq!(unknown_key("invalid type"), None);
+    }
+}
