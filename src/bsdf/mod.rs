@@ -9,11 +9,32 @@
 //! Radiance is transported: what a dielectric transmits carries the factor 1 / eta^2 (eta of the side of
 //! `wi` over that of `wo`) by which radiance shrinks in a denser medium (Veach 1997, section 5.2).
 
+mod fresnel;
+mod microfacet;
+mod grid;
+mod energy;
+
 mod lambert;
+mod oren_nayar;
+mod mirror;
+mod dielectric;
+mod rough_dielectric;
+mod conductor;
+mod metals;
+mod plastic;
+mod principled;
 
 use crate::math::{Rgb, Vec3};
 
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
 pub use lambert::Lambert;
+pub use metals::{METALS, Metal};
+pub use mirror::Mirror;
+pub use oren_nayar::OrenNayar;
+pub use plastic::Plastic;
+pub use principled::{Principled, PrincipledParameters};
+pub use rough_dielectric::RoughDielectric;
 
 /// What a model does with light. Never panics; a degenerate argument (`wo.z <= 0`) scatters nothing.
 pub trait Scatter {
@@ -78,11 +99,82 @@ pub enum LobeKind {
     Refraction,
 }
 
+impl BsdfSample {
+    /// The mirrored direction as a delta lobe.
+    #[inline]
+    fn mirrored(wo: Vec3, weight: Rgb) -> Option<Self> {
+        (wo.z > 0.0).then(|| Self {
+            wi: Vec3::new(-wo.x, -wo.y, wo.z),
+            weight,
+            pdf_solid_angle: 0.0,
+            is_delta: true,
+            kind: LobeKind::Mirror,
+            eta_scale: 1.0,
+        })
+    }
+
+    /// The direction `wi`, however drawn, with value and density over all lobes of `bsdf`.
+    #[inline]
+    fn spread(bsdf: &impl Scatter, wo: Vec3, wi: Vec3, kind: LobeKind) -> Option<Self> {
+        let BsdfValue { f_cos, pdf_solid_angle } = bsdf.evaluate(wo, wi);
+        (pdf_solid_angle > 0.0).then(|| Self {
+            wi,
+            weight: f_cos / pdf_solid_angle,
+            pdf_solid_angle,
+            is_delta: false,
+            kind,
+            eta_scale: 1.0,
+        })
+    }
+}
+
 /// The closed set of models.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bsdf {
     /// Ideal diffuse.
     Lambert(Lambert),
+    /// Rough diffuse.
+    OrenNayar(OrenNayar),
+    /// Perfect mirror.
+    Mirror(Mirror),
+    /// Smooth glass, or a thin sheet of it.
+    Dielectric(Dielectric),
+    /// Frosted glass, or a thin sheet of it.
+    RoughDielectric(RoughDielectric),
+    /// Metal.
+    Conductor(Conductor),
+    /// Diffuse base under a dielectric coat.
+    Plastic(Plastic),
+    /// The artist's model.
+    Principled(Principled),
+}
+
+impl Bsdf {
+    /// Glass of any roughness: [`RoughDielectric::new`], or [`Dielectric::new`] where that is `None`.
+    #[inline]
+    pub fn dielectric(
+        eta_inside_over_outside: f32,
+        entering: bool,
+        transmittance: Rgb,
+        thin: bool,
+        roughness: f32,
+    ) -> Self {
+        match RoughDielectric::new(
+            eta_inside_over_outside,
+            entering,
+            transmittance,
+            thin,
+            roughness,
+        ) {
+            Some(rough) => Self::RoughDielectric(rough),
+            None => Self::Dielectric(Dielectric::new(
+                eta_inside_over_outside,
+                entering,
+                transmittance,
+                thin,
+            )),
+        }
+    }
 }
 
 /// Calls the same method on whichever model it is.
@@ -90,6 +182,13 @@ macro_rules! each {
     ($bsdf:expr, $model:ident => $call:expr) => {
         match $bsdf {
             Bsdf::Lambert($model) => $call,
+            Bsdf::OrenNayar($model) => $call,
+            Bsdf::Mirror($model) => $call,
+            Bsdf::Dielectric($model) => $call,
+            Bsdf::RoughDielectric($model) => $call,
+            Bsdf::Conductor($model) => $call,
+            Bsdf::Plastic($model) => $call,
+            Bsdf::Principled($model) => $call,
         }
     };
 }

@@ -1,1 +1,5 @@
 //! One integration binary.
+
+mod support;
+
+mod bsdf;

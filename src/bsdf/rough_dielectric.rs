@@ -1,0 +1,189 @@
+//! Frosted glass: a rough dielectric interface, or a thin sheet with a rough face.
+//!
+//! Source: B. Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007, for
+//! single scattering; the rest returns as in [`super::energy`]. Light that scattered often has forgotten
+//! its side: it leaves to each side in proportion to M = n^2 mean(K), which makes the lobe one separable
+//! function K(wo) K(wi) / (pi (M_near + M_far)) of the whole sphere, reciprocal across the interface.
+
+use super::dielectric::{reflection_probability, relative_eta, sheet_reflectance};
+use super::energy::{self, Single};
+use super::microfacet::{self, Ggx};
+use super::{BsdfSample, BsdfValue, LobeKind, Scatter, fresnel};
+use crate::math::{Rgb, Vec3};
+use std::f32::consts::FRAC_1_PI;
+
+/// Rough interface, or thin sheet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughDielectric {
+    ggx: Ggx,
+    /// Index of the far side over that of the side of `wo`.
+    eta: f32,
+    transmittance: Rgb,
+    thin: bool,
+    /// M of the side of `wo` and of the far side, in units of the near index squared.
+    multiple_near: f32,
+    multiple_far: f32,
+}
+
+impl RoughDielectric {
+    /// As [`super::Dielectric::new`], with perceptual `roughness` in [0, 1]. A thin sheet scatters what it
+    /// transmits as widely as what it reflects. `None`: the interface is smooth, or its two sides differ so
+    /// little that it is as good as absent; a [`super::Dielectric`] describes it.
+    #[inline]
+    pub fn new(
+        eta_inside_over_outside: f32,
+        entering: bool,
+        transmittance: Rgb,
+        thin: bool,
+        roughness: f32,
+    ) -> Option<Self> {
+        let ggx = Ggx::new(roughness, 0.0)?;
+        let eta = relative_eta(eta_inside_over_outside, entering, thin);
+        // Nearer to 1, half vectors of transmissions drown in rounding.
+        if (eta - 1.0).abs() < 1e-3 {
+            return None;
+        }
+        let (multiple_near, multiple_far) = if thin {
+            let [white, _] = energy::single_mean(Some(&ggx));
+            (1.0 - white, 1.0 - white)
+        } else {
+            let far = energy::dielectric_loss_mean(&ggx, 1.0 / eta);
+            (energy::dielectric_loss_mean(&ggx, eta), eta * eta * far)
+        };
+        Some(Self { ggx, eta, transmittance, thin, multiple_near, multiple_far })
+    }
+
+    /// K of a direction on either side.
+    #[inline]
+    fn loss(&self, w: Vec3) -> f32 {
+        if self.thin {
+            1.0 - Single::new(Some(&self.ggx), Vec3::new(w.x, w.y, w.z.abs())).white
+        } else if w.z > 0.0 {
+            energy::dielectric_loss(&self.ggx, w.z, self.eta)
+        } else {
+            energy::dielectric_loss(&self.ggx, -w.z, 1.0 / self.eta)
+        }
+    }
+
+    /// Reflectance of a microfacet, the probability to choose it, and the cosine behind it.
+    #[inline]
+    fn reflectance(&self, wo: Vec3, h: Vec3) -> (f32, f32, f32) {
+        let (face, cos_t) = fresnel::dielectric(wo.dot(h), self.eta);
+        let reflectance = if self.thin { sheet_reflectance(face) } else { face };
+        (reflectance, reflection_probability(reflectance, self.transmittance), cos_t)
+    }
+
+    /// eta^2 for radiance that crosses; a sheet leads back to the same medium.
+    #[inline]
+    fn eta_scale(&self) -> f32 {
+        if self.thin { 1.0 } else { self.eta * self.eta }
+    }
+
+    /// The far direction of a sheet as a reflection.
+    #[inline]
+    fn unfold(wi: Vec3) -> Vec3 {
+        Vec3::new(wi.x, wi.y, -wi.z)
+    }
+
+    /// Single scattering: value (with the radiance factor) and density.
+    #[inline]
+    fn single(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        let reflected = wi.z > 0.0;
+        let (h, lobe) = if reflected || self.thin {
+            let wi = if reflected { wi } else { Self::unfold(wi) };
+            let Some(h) = microfacet::reflection_half(wo, wi) else {
+                return BsdfValue::ZERO;
+            };
+            (h, self.ggx.reflection(wo, wi, h))
+        } else {
+            let Some(h) = microfacet::refraction_half(wo, wi, self.eta) else {
+                return BsdfValue::ZERO;
+            };
+            (h, self.ggx.transmission(wo, wi, h, self.eta))
+        };
+        let (reflectance, probability, _) = self.reflectance(wo, h);
+        if reflected {
+            BsdfValue {
+                f_cos: Rgb::splat(lobe.f_cos * reflectance),
+                pdf_solid_angle: lobe.pdf_solid_angle * probability,
+            }
+        } else {
+            let energy = lobe.f_cos * (1.0 - reflectance);
+            BsdfValue {
+                f_cos: self.transmittance * (energy / self.eta_scale()),
+                pdf_solid_angle: lobe.pdf_solid_angle * (1.0 - probability),
+            }
+        }
+    }
+}
+
+impl Scatter for RoughDielectric {
+    #[inline]
+    fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        if wo.z <= 0.0 || wi.z == 0.0 {
+            return BsdfValue::ZERO;
+        }
+        let single = self.single(wo, wi);
+        let loss = self.loss(wo);
+        let multiple = self.multiple_near + self.multiple_far;
+        if multiple <= 0.0 {
+            return single;
+        }
+        let cos_i = wi.z.abs();
+        let (side, tint) = if wi.z > 0.0 {
+            (self.multiple_near, Rgb::WHITE)
+        } else {
+            (self.multiple_far, self.transmittance)
+        };
+        let pdf_multiple =
+            energy::spread_pdf(cos_i, energy::loss_grazing(&self.ggx)) * side / multiple;
+        let f_cos = loss * self.loss(wi) * cos_i * FRAC_1_PI / multiple;
+        BsdfValue {
+            f_cos: single.f_cos + tint * f_cos,
+            pdf_solid_angle: (1.0 - loss) * single.pdf_solid_angle + loss * pdf_multiple,
+        }
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vec3, lobe: f32, direction: [f32; 2]) -> Option<BsdfSample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        let multiple = self.multiple_near + self.multiple_far;
+        // With the probability of what single scattering loses, choose multiple scattering.
+        let loss = if multiple > 0.0 { self.loss(wo) } else { 0.0 };
+        let wi = if lobe < loss {
+            let wi = energy::sample_spread(direction, energy::loss_grazing(&self.ggx));
+            if lobe * multiple < loss * self.multiple_near { wi } else { Self::unfold(wi) }
+        } else {
+            let h = self.ggx.sample_visible(wo, direction);
+            let (_, probability, cos_t) = self.reflectance(wo, h);
+            let reflected = fresnel::reflect(wo, h);
+            if lobe - loss < (1.0 - loss) * probability {
+                (reflected.z > 0.0).then_some(reflected)?
+            } else if self.thin {
+                (reflected.z > 0.0).then_some(Self::unfold(reflected))?
+            } else {
+                let refracted = fresnel::refract(wo, h, self.eta, cos_t);
+                (refracted.z < 0.0).then_some(refracted)?
+            }
+        };
+        if wi.z > 0.0 {
+            BsdfSample::spread(self, wo, wi, LobeKind::Glossy)
+        } else {
+            let sample = BsdfSample::spread(self, wo, wi, LobeKind::Refraction)?;
+            Some(BsdfSample { eta_scale: self.eta_scale(), ..sample })
+        }
+    }
+
+    #[inline]
+    fn albedo(&self, wo: Vec3) -> Rgb {
+        let (reflectance, _, _) = self.reflectance(wo, Vec3::Z);
+        Rgb::splat(reflectance) + self.transmittance * (1.0 - reflectance)
+    }
+
+    #[inline]
+    fn is_delta(&self) -> bool {
+        false
+    }
+}
