@@ -1,18 +1,5 @@
-//! The one integration binary: physics, statistics and rules of the house.
+//! One integration binary.
 
-mod accel;
-mod allocation;
-mod camera;
-mod cli;
-mod closed_forms;
-mod determinism;
-mod filter;
-mod image;
-mod light;
-mod load_mutations;
-mod mtl;
-mod obj;
-mod scene_file;
-mod scene_file_errors;
 mod support;
-mod tidy;
+
+mod bsdf;

@@ -1,5 +1,8 @@
-//! What the tests share: scenes built in code, ways to render them, a slow OBJ parser, and the test for means.
+//! What several test files share.
 
-pub(crate) mod reference_obj;
-pub(crate) mod scenes;
-pub(crate) mod z_test;
+pub(crate) mod chi_square;
+
+/// How much more the thorough tier (`GLINT_FULL=1`) does than the quick one.
+pub(crate) fn effort(quick: usize, full: usize) -> usize {
+    if std::env::var_os("GLINT_FULL").is_some_and(|v| v == "1") { full } else { quick }
+}
