@@ -30,7 +30,7 @@ def box(size, center=(0, 0, 0), uv_scale=1):
 
 
 def sheet(f, columns, rows, smooth=True):
-    """The surface f(u, v) over the unit square, as a grid; normals by differences. uv are (u, v)."""
+    """The surface f(u, v) over the unit square, as a grid; normals by differences, within it in v. uv are (u, v)."""
     points, uvs, normals = [], [], []
     h = 1e-4
     for j in range(rows + 1):
@@ -40,7 +40,7 @@ def sheet(f, columns, rows, smooth=True):
             uvs.append((u, v))
             if smooth:
                 du = [a - b for a, b in zip(f(u + h, v), f(u - h, v))]
-                dv = [a - b for a, b in zip(f(u, v + h), f(u, v - h))]
+                dv = [a - b for a, b in zip(f(u, min(v + h, 1)), f(u, max(v - h, 0)))]
                 normals.append(normalize(cross(du, dv)))
     w = columns + 1
     faces = []
