@@ -1,5 +1,19 @@
-//! One integration binary.
+//! The one integration binary: physics, statistics and rules of the house.
 
-mod support;
-
+mod accel;
+mod allocation;
 mod bsdf;
+mod camera;
+mod cli;
+mod closed_forms;
+mod determinism;
+mod filter;
+mod image;
+mod light;
+mod load_mutations;
+mod mtl;
+mod obj;
+mod scene_file;
+mod scene_file_errors;
+mod support;
+mod tidy;
