@@ -15,7 +15,7 @@ mod dielectric;
 mod reflection;
 
 pub(super) use coat::{COAT_F0, coat_excess};
-pub(super) use dielectric::{coat_albedo, coat_mean, dielectric_loss, dielectric_loss_mean};
+pub(super) use dielectric::{coat_mean, dielectric_loss, dielectric_loss_mean, reflection_albedo};
 pub(super) use reflection::{Single, single_mean};
 
 use super::microfacet::{Ggx, SMOOTH_ALPHA};
