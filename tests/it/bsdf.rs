@@ -99,7 +99,7 @@ fn p_value(bsdf: &Bsdf, wo: Vec3, pdf: impl Fn(Vec3) -> f32, count: usize, seed:
 }
 
 /// Samples per comparison of the chi-square tests, in the quick and in the thorough tier.
-const COUNTS: [usize; 2] = [100_000, 1_000_000];
+const COUNTS: [usize; 2] = [60_000, 500_000];
 
 #[test]
 fn samples_have_the_density_of_evaluate() {

@@ -160,8 +160,8 @@ impl Cell {
         let quarters = self.quarters();
         let parts = quarters.map(|quarter| quarter.gauss(pdf));
         let sum: f64 = parts.iter().sum();
-        let settled = (sum - estimate).abs() <= 1e-7 + 1e-4 * sum;
-        if depth == 0 || settled && pilot.len() <= 16 {
+        let settled = (sum - estimate).abs() <= 1e-7 + 3e-4 * sum;
+        if depth == 0 || settled && pilot.len() <= 32 {
             return sum;
         }
         let pilots = self.split(pilot);
