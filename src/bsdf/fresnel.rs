@@ -52,7 +52,7 @@ fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
     let a = (0.5 * (modulus + difference)).max(0.0).sqrt();
     let perpendicular = (modulus + cos2 - 2.0 * a * cos_i) / (modulus + cos2 + 2.0 * a * cos_i);
     let (even, odd) = (modulus * cos2 + sin2 * sin2, 2.0 * a * cos_i * sin2);
-    // At grazing incidence of a medium without a normal component (modulus = 0) the ratio is 0/0: all is reflected.
+    // Without a normal component (modulus = 0) at grazing incidence the ratio is 0/0: all is reflected.
     let sum = even + odd;
     let parallel = if sum > 0.0 { perpendicular * (even - odd) / sum } else { perpendicular };
     (0.5 * (perpendicular + parallel)).clamp(0.0, 1.0)

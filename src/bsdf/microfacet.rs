@@ -44,9 +44,10 @@ impl Lobe {
 }
 
 impl Ggx {
-    /// `roughness` is perceptual, in [0, 1]: alpha = roughness^2. Anisotropy in [-1, 1] keeps that alpha
-    /// along the highlight (x when positive, y when negative) and divides it by up to 10 across: the aspect
-    /// of Burley ("Physically-Based Shading at Disney", 2012), normalised so that alpha stays below 1. `None`: the surface is smooth ([`SMOOTH_ALPHA`]).
+    /// `roughness` is perceptual, in [0, 1]: alpha = roughness^2. Anisotropy in [-1, 1] keeps that alpha along
+    /// the highlight (x when positive, y when negative) and divides it by up to 10 across: the aspect of
+    /// Burley ("Physically-Based Shading at Disney", 2012), normalised so that alpha stays below 1. `None`:
+    /// the surface is smooth ([`SMOOTH_ALPHA`]).
     #[inline]
     pub(super) fn new(roughness: f32, anisotropy: f32) -> Option<Self> {
         let along = roughness.min(1.0) * roughness.min(1.0);

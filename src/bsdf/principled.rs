@@ -25,7 +25,8 @@ pub struct PrincipledParameters {
     /// Perceptual roughness of the main specular lobe.
     pub roughness: f32,
     /// Specular reflectance at normal incidence of the dielectric part (0.04 for eta 1.5). Below 0.02 the
-    /// reflectance at grazing angles fades too, so that 0 is purely diffuse.
+    /// reflectance at grazing angles fades too, so that 0 is purely diffuse. The diffuse lobe gets what the
+    /// largest channel leaves, so a coloured `specular` darkens the other channels.
     pub specular: Rgb,
     /// -1..1: stretches the highlight along the local x (positive) or y axis.
     pub anisotropy: f32,
@@ -74,7 +75,7 @@ pub struct Principled {
     ggx: Option<Ggx>,
     /// Its Fresnel factor, blended between dielectric and metal.
     specular: Schlick<Rgb>,
-    /// The Fresnel factor of the dielectric part alone, its largest channel.
+    /// The Fresnel factor of the dielectric part alone, the largest channel of it.
     dielectric: Schlick<f32>,
     /// Lobe of the coat; `None` smooth.
     coat_ggx: Option<Ggx>,

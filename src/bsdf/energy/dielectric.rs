@@ -52,7 +52,7 @@ pub(in super::super) fn coat_mean(ggx: Option<&Ggx>, eta: f32) -> f32 {
     mean
 }
 
-/// The tables span indices from 1 / ETA_MAX to ETA_MAX.
+/// The tables span indices from 1 / ETA_MAX to ETA_MAX; beyond, energy is kept only approximately.
 const ETA_MAX: f32 = 4.0;
 
 /// Table coordinate of an index ratio: finest around 1; an interface's two sides mirror at 1/2.
