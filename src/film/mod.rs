@@ -43,6 +43,13 @@ impl Film {
         self.region
     }
 
+    /// Empties it, over another region; keeps its memory.
+    pub fn restart(&mut self, region: Region) {
+        self.region = region;
+        self.sums.clear();
+        self.sums.resize(region.pixels(), PixelSums::default());
+    }
+
     /// Adds sample number `sample` of `pixel`; its radiance and coverage carry the filter's weight. The
     /// radiance must be finite.
     #[inline]

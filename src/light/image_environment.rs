@@ -50,7 +50,7 @@ impl ImageEnvironment {
             *texel = repaired;
         }
         let image = LatLong::new(texels, width);
-        let edges = image.patch_edges();
+        let edges = image.row_edges();
         let weights = patch_weights(&image, &edges);
         Ok(Self {
             image,
@@ -80,8 +80,15 @@ impl ImageEnvironment {
     /// Density of [`ImageEnvironment::sample`] per solid angle.
     #[inline]
     pub fn pdf_solid_angle(&self, direction: Vec3) -> f32 {
+        self.radiance_and_pdf(direction).1
+    }
+
+    /// [`ImageEnvironment::radiance`] and [`ImageEnvironment::pdf_solid_angle`] for the price of one.
+    #[inline]
+    pub fn radiance_and_pdf(&self, direction: Vec3) -> (Rgb, f32) {
         let direction = self.image_from_world(direction);
-        self.pdf_at(direction, &self.image.place(direction))
+        let place = self.image.place(direction);
+        (self.image.lookup(&place), self.pdf_at(direction, &place))
     }
 
     /// A direction in proportion to the luminance; `None` from a black image.
@@ -100,8 +107,7 @@ impl ImageEnvironment {
         let direction = self.world_from_image(self.image.direction(column, s, cos_theta));
 
         // The rest follows from the direction alone, as it does for a ray that happens to take it.
-        let (radiance, pdf_solid_angle) =
-            (self.radiance(direction), self.pdf_solid_angle(direction));
+        let (radiance, pdf_solid_angle) = self.radiance_and_pdf(direction);
         (!radiance.is_black() && pdf_solid_angle > 0.0).then_some(LightSample {
             direction,
             distance: f32::INFINITY,
@@ -158,7 +164,8 @@ pub fn orientation(up: DVec3, rotation: f64) -> DMat3 {
     tilt * DMat3::from_cols(DVec3::new(cos, 0.0, -sin), DVec3::Y, DVec3::new(sin, 0.0, cos))
 }
 
-/// Integral of the luminance over each patch, row-major.
+/// Mean luminance of each patch's corners times its solid angle, row-major: with the shape within the
+/// patches, a density that is continuous.
 ///
 /// Where there is any light, a weight is at least 2^-22 of its row's sum, and a row's sum 2^-22 of the
 /// whole: no patch vanishes beside the sun when the cumulative distribution is rounded.

@@ -43,12 +43,9 @@ impl LatLong {
     }
 
     /// cos(theta) of the upper and the lower edge of each row of patches.
-    pub(super) fn patch_edges(&self) -> Vec<[f64; 2]> {
-        let edge = |j: usize| match j {
-            0 => 1.0,
-            j if j > self.height => -1.0,
-            j => double::cos(PI * (j as f64 - 0.5) / self.height as f64),
-        };
+    pub(super) fn row_edges(&self) -> Vec<[f64; 2]> {
+        let edge =
+            |j: usize| double::cos((PI * (j as f64 - 0.5) / self.height as f64).clamp(0.0, PI));
         (0..=self.height).map(|j| [edge(j), edge(j + 1)]).collect()
     }
 

@@ -4,7 +4,7 @@
 //! scene, traces a ray or decides visibility. The variant files never import [`Light`].
 //!
 //! Emissive surfaces are not a variant: their radiance is a material's, and their list belongs to the
-//! world. [`triangle`] holds the geometry of sampling one.
+//! world. [`triangle`] holds the geometry of sampling one. A [`Sky`] is two lights, an image and a disc.
 
 mod constant;
 mod directional;
@@ -92,6 +92,15 @@ impl Light {
             Self::Directional(light) => light.pdf_solid_angle(direction),
             Self::Constant(light) => light.pdf_solid_angle(direction),
             Self::Image(light) => light.pdf_solid_angle(direction),
+        }
+    }
+
+    /// [`Light::radiance`] and [`Light::pdf_solid_angle`], with their common part done once.
+    #[inline]
+    pub fn radiance_and_pdf(&self, direction: Vec3) -> (Rgb, f32) {
+        match self {
+            Self::Image(light) => light.radiance_and_pdf(direction),
+            light => (light.radiance(direction), light.pdf_solid_angle(direction)),
         }
     }
 

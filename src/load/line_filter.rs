@@ -16,38 +16,43 @@ const LONGEST_STATEMENT: usize = 1 << 24;
 /// Bytes read at a time.
 const BUFFER_BYTES: usize = 1 << 16;
 
-/// A statement that is neither empty nor a comment, without the blanks around it.
+/// A statement that is neither empty nor a comment.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Statement<'a> {
     /// Line that it starts on, from 1.
     pub(super) line: usize,
-    /// All of it.
+    /// All of it, without the blanks around it.
     pub(super) text: &'a str,
+    /// The first word.
+    pub(super) keyword: &'a str,
+    /// What follows the keyword, from the blank on.
+    rest: &'a str,
 }
 
 impl<'a> Statement<'a> {
-    /// The first word.
-    pub(super) fn keyword(&self) -> &'a str {
-        self.text.split_whitespace().next().unwrap_or_default()
+    fn new(line: usize, text: &'a str) -> Self {
+        let text = text.trim();
+        let (keyword, rest) = text.split_at(text.find(char::is_whitespace).unwrap_or(text.len()));
+        Self { line, text, keyword, rest }
     }
 
     /// What follows the keyword, as numbers: a `#` after a blank starts a comment.
     pub(super) fn numbers(&self) -> &'a str {
-        self.arguments(|_| true)
+        self.before_comment(|_| true)
     }
 
     /// What follows the keyword, as a name. Names may contain spaces and `#` ("Material #25"), so a
     /// comment is only what stands behind a `#` between blanks.
     pub(super) fn name(&self) -> &'a str {
-        self.arguments(|after| after.is_empty() || after.starts_with(char::is_whitespace))
+        self.before_comment(|after| after.is_empty() || after.starts_with(char::is_whitespace))
     }
 
-    fn arguments(&self, starts_comment: impl Fn(&str) -> bool) -> &'a str {
-        let all = &self.text[self.keyword().len()..];
-        let comment = all.match_indices('#').find(|&(at, _)| {
-            all[..at].ends_with(char::is_whitespace) && starts_comment(&all[at + 1..])
+    fn before_comment(&self, starts_comment: impl Fn(&str) -> bool) -> &'a str {
+        let rest = self.rest;
+        let comment = rest.match_indices('#').find(|&(at, _)| {
+            rest[..at].ends_with(char::is_whitespace) && starts_comment(&rest[at + 1..])
         });
-        comment.map_or(all, |(at, _)| &all[..at]).trim()
+        comment.map_or(rest, |(at, _)| &rest[..at]).trim()
     }
 }
 
@@ -132,7 +137,7 @@ impl<R: BufRead> Statements<R> {
                 &self.text
             }
         };
-        Ok(Some(Statement { line, text: text.trim() }))
+        Ok(Some(Statement::new(line, text)))
     }
 
     /// Appends the next line without its end to `bytes`; false at the end of the file.
@@ -240,7 +245,7 @@ mod tests {
 
     #[test]
     fn names_keep_their_number_signs() {
-        let statement = |text| Statement { line: 1, text };
+        let statement = |text| Statement::new(1, text);
         assert_eq!(statement("usemtl Material #25").name(), "Material #25");
         assert_eq!(statement("usemtl\tred # the red one").name(), "red");
         assert_eq!(statement("usemtl #").name(), "");

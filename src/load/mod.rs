@@ -17,6 +17,7 @@ mod obj_filter;
 mod obj_mesh;
 mod obj_polygon;
 mod obj_read;
+mod obj_scan;
 mod paths;
 mod scene_file;
 mod warning_list;

@@ -62,30 +62,18 @@ enum Slot<'a> {
     Map(&'a mut Option<TextureStatement>),
 }
 
-/// Every key that has a meaning here.
-const KEYS: [&str; 29] = [
-    "newmtl", "kd", "ks", "ke", "tf", "ns", "ni", "d", "tr", "illum", "pr", "pm", "pc", "pcr",
-    "ps", "aniso", "anisor", "map_kd", "map_ks", "map_ke", "map_d", "map_bump", "bump", "map_norm",
-    "norm", "map_pr", "map_pm", "ka", "map_ka",
-];
+/// Every key that has a meaning, in lower case.
+const KEYS: &str = "newmtl kd ks ke tf ns ni d tr illum pr pm pc pcr ps aniso anisor map_kd map_ks map_ke \
+    map_d map_bump bump map_norm norm map_pr map_pm ka map_ka";
 
 /// Keys of effects that are not rendered: worth a word, since the picture will lack them.
-const UNSUPPORTED: [&str; 14] = [
-    "disp",
-    "map_disp",
-    "decal",
-    "refl",
-    "map_refl",
-    "map_ns",
-    "map_tr",
-    "map_tf",
-    "map_ps",
-    "map_pc",
-    "map_pcr",
-    "map_aniso",
-    "map_anisor",
-    "map_rma",
-];
+const UNSUPPORTED: &str = "disp map_disp decal refl map_refl map_ns map_tr map_tf map_ps map_pc map_pcr \
+    map_aniso map_anisor map_rma";
+
+/// Whether `key` is in one of the lists above.
+fn is_in(list: &str, key: &str) -> bool {
+    list.split(' ').any(|listed| listed == key)
+}
 
 impl MtlRecord {
     /// The place of the value of `key` (in lower case); `None` for keys without a place.
@@ -147,9 +135,13 @@ pub(super) fn read_mtl(path: &Path, warnings: &mut WarningList) -> Result<Vec<Mt
     let mut statements = Statements::open(path)?;
     let mut records: Vec<MtlRecord> = Vec::new();
     while let Some(statement) = statements.next()? {
-        let key = statement.keyword().to_lowercase();
+        let key = statement.keyword.to_lowercase();
         if key == "newmtl" {
             let name = statement.name().to_string();
+            if name.is_empty() {
+                let location = Location::new(path, statement.line);
+                warnings.add("nameless materials", location, || "newmtl needs a name".to_string());
+            }
             records.push(MtlRecord { name, line: statement.line, ..Default::default() });
             continue;
         }
@@ -157,7 +149,7 @@ pub(super) fn read_mtl(path: &Path, warnings: &mut WarningList) -> Result<Vec<Mt
             warnings.add(kind, Location::new(path, statement.line), || message);
         };
         let Some(record) = records.last_mut() else {
-            if KEYS.contains(&key.as_str()) {
+            if is_in(KEYS, &key) {
                 let message = format!("{:?} stands before any newmtl; ignored", shown(statement));
                 warn("statements without a material", message);
             }
@@ -174,7 +166,7 @@ pub(super) fn read_mtl(path: &Path, warnings: &mut WarningList) -> Result<Vec<Mt
                     warn("malformed statements", message);
                 }
             }
-        } else if UNSUPPORTED.contains(&key.as_str()) {
+        } else if is_in(UNSUPPORTED, &key) {
             let message = format!("{:?}: not rendered; ignored", shown(statement));
             warn("unsupported statements", message);
         } else if let Some(meant) = similar_key(&key) {
@@ -195,8 +187,8 @@ fn shown(statement: Statement<'_>) -> String {
 
 /// A key that `key` may be a misspelling of.
 fn similar_key(key: &str) -> Option<&'static str> {
-    let is_near = |known: &&&str| key.len() > 2 && strsim::osa_distance(key, known) == 1;
-    if KEYS.contains(&key) { None } else { KEYS.iter().find(is_near).copied() }
+    let is_near = |known: &&str| key.len() > 2 && strsim::osa_distance(key, known) == 1;
+    if is_in(KEYS, key) { None } else { KEYS.split(' ').find(is_near) }
 }
 
 /// Parses the arguments of `statement` into `slot`.
@@ -257,11 +249,13 @@ mod tests {
     #[test]
     fn every_key_has_a_place_and_every_place_a_key() {
         let mut record = MtlRecord::default();
-        for key in KEYS {
+        for key in KEYS.split(' ') {
             let has_place = record.slot(key).is_some();
             assert_eq!(has_place, !["newmtl", "ka", "map_ka"].contains(&key), "{key}");
         }
-        assert!(UNSUPPORTED.iter().all(|key| record.slot(key).is_none() && !KEYS.contains(key)));
+        for key in UNSUPPORTED.split(' ') {
+            assert!(record.slot(key).is_none() && !is_in(KEYS, key), "{key}");
+        }
     }
 
     #[test]

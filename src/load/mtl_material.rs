@@ -5,18 +5,19 @@
 //!
 //! | record | surface |
 //! |---|---|
-//! | `illum` 4, 6, 7, 9 | dielectric: `Ni` (1.5), sharp, or rough by `Pr`, `Tf` |
+//! | `illum` 4, 6, 7, 9 | dielectric of index `Ni` (1.5) and transmittance `Tf`; rough by `Pr`, or `Ns` below 100 |
 //! | any of `Pr Pm Pc Ps aniso map_Pr map_Pm` | principled, with these |
 //! | `illum` 0, 1; `Ks` black or absent; `Ns` at most 1 | Lambert: no highlight is meant |
-//! | `illum` 3, 5 with `Kd` black | mirror, or metal of colour `Ks` when rough |
+//! | `illum` 3, 5 with `Kd` black or absent | mirror; metal of colour `Ks` when `Ns` is below 100 |
 //! | `illum` 3, 5 otherwise | principled that reflects `Ks` at normal incidence, with `Kd + Ks` at most 1 |
 //! | the rest | principled, with `Ks` as the artists' "specular level" |
 //!
 //! - Specular level: exporters write `Ks 0.5` for the common dielectric with 4 % reflectance (Blender does),
 //!   and hand-made files use it for the strength of a highlight on plastic. Both come out right with
-//!   reflectance 0.08 Ks (B. Burley, "Physically Based Shading at Disney", 2012, section 5.4).
+//!   reflectance 0.08 Ks (B. Burley, "Physically Based Shading at Disney", 2012, parameter "specular").
 //! - Exponent: Phong's highlight is as wide as a microfacet one of alpha = sqrt(2 / (Ns + 2)) (B. Walter et
-//!   al., "Microfacet Models for Refraction through Rough Surfaces", 2007, section 5.2); roughness is sqrt(alpha).
+//!   al., "Microfacet Models for Refraction through Rough Surfaces", 2007, alpha_p = 2 / alpha_b^2 - 2);
+//!   roughness is sqrt(alpha).
 //! - `illum` 3 and above trace reflections, which the manual defines as sharp whatever `Ns` shapes the
 //!   highlight of lamps; only exponents below 100, which no one gives to a clear thing, make them rough.
 
@@ -76,9 +77,10 @@ impl Context<'_> {
         }
     }
 
+    /// Scattering, by the table above.
     fn surface(&mut self, r: &MtlRecord, diffuse: ColorInput) -> Surface {
-        let illumination = r.illumination.map_or(2, |number| number as u32);
-        if matches!(illumination, 4 | 6 | 7 | 9) {
+        let illumination = illumination(r);
+        if is_glass(r) {
             return Surface::Dielectric {
                 eta: r.eta.unwrap_or(COMMON_ETA),
                 roughness: self.roughness(r, traced_roughness(r)),
@@ -87,49 +89,49 @@ impl Context<'_> {
                 thin: false,
             };
         }
-        let specular = self.color(r, "Ks", r.specular, &r.specular_map, 0.0);
-        let has_highlight = illumination >= 2
-            && !specular.value.is_black()
-            && r.exponent.is_none_or(|exponent| exponent > 1.0);
         if has_pbr_keys(r) {
-            let reflectance = match (r.specular, &r.specular_map, r.eta) {
-                (None, None, None) => ColorInput::constant(Rgb::splat(COMMON_REFLECTANCE)),
-                (None, None, Some(eta)) => {
-                    ColorInput::constant(Rgb::splat(((eta - 1.0) / (eta + 1.0)).powi(2)))
-                }
-                _ => scaled(specular, SPECULAR_LEVEL),
-            };
             return Surface::Principled {
                 base_color: diffuse,
                 metallic: self.scalar(r, "Pm", r.metallic, &r.metallic_map, 0.0),
                 roughness: self.roughness(r, phong_roughness(r)),
-                specular: reflectance,
+                specular: self.dielectric_reflectance(r),
                 anisotropy: anisotropy(r),
                 clearcoat: r.clearcoat.unwrap_or(0.0),
                 clearcoat_roughness: r.clearcoat_roughness.unwrap_or(0.0),
                 sheen: r.sheen.unwrap_or(0.0),
             };
         }
-        if !has_highlight {
+        if illumination < 2 || !has_highlight(r) {
             return Surface::Lambert { albedo: diffuse };
         }
+        let specular = self.color(r, "Ks", r.specular, &r.specular_map, 0.0);
         if !matches!(illumination, 3 | 5) {
-            let specular = scaled(specular, SPECULAR_LEVEL);
-            return principled(diffuse, 0.0, phong_roughness(r), specular);
+            return principled(diffuse, 0.0, phong_roughness(r), scaled(specular, SPECULAR_LEVEL));
         }
-        let is_black = diffuse.value.max_channel() <= NEARLY_BLACK
-            || (r.diffuse.is_none() && diffuse.texture.is_none());
-        let roughness = traced_roughness(r);
-        if is_black && roughness == 0.0 {
-            Surface::Mirror { reflectance: specular }
-        } else if is_black {
-            let dark = ColorInput::constant(Rgb::BLACK);
-            principled(specular, 1.0, roughness, dark)
-        } else {
-            // Textures only darken, so the bound on the values holds for every texel.
-            let total = (diffuse.value + specular.value).max_channel().max(1.0);
-            principled(scaled(diffuse, 1.0 / total), 0.0, roughness, scaled(specular, 1.0 / total))
+        let is_unsaid = r.diffuse.is_none() && r.diffuse_map.is_none();
+        let is_black = is_unsaid || diffuse.value.max_channel() <= NEARLY_BLACK;
+        match (is_black, traced_roughness(r)) {
+            (true, 0.0) => Surface::Mirror { reflectance: specular },
+            (true, roughness) => {
+                principled(specular, 1.0, roughness, ColorInput::constant(Rgb::BLACK))
+            }
+            (false, roughness) => {
+                // Textures only darken, so the bound on the values holds for every texel.
+                let share = 1.0 / (diffuse.value + specular.value).max_channel().max(1.0);
+                principled(scaled(diffuse, share), 0.0, roughness, scaled(specular, share))
+            }
         }
+    }
+
+    /// Reflectance at normal incidence beside PBR keys: by `Ks`, else by `Ni`, else the common one.
+    fn dielectric_reflectance(&mut self, r: &MtlRecord) -> ColorInput {
+        if r.specular.is_some() || r.specular_map.is_some() {
+            let level = self.color(r, "Ks", r.specular, &r.specular_map, 0.0);
+            return scaled(level, SPECULAR_LEVEL);
+        }
+        // Fresnel's equations at normal incidence.
+        let of_eta = |eta: f32| ((eta - 1.0) / (eta + 1.0)).powi(2);
+        ColorInput::constant(Rgb::splat(r.eta.map_or(COMMON_REFLECTANCE, of_eta)))
     }
 
     fn emission(&mut self, r: &MtlRecord) -> Option<Emission> {
@@ -137,12 +139,11 @@ impl Context<'_> {
         (!radiance.value.is_black()).then_some(Emission { radiance })
     }
 
-    /// Coverage: `d` (or 1 - `Tr`) times `map_d`; without `map_d` the alpha of `map_Kd`, which `world` drops
+    /// Coverage: `d` (or 1 - `Tr`) times the red channel of `map_d`; without `map_d` the alpha of `map_Kd`, which `world` drops
     /// when the image has none. Of glass `d` says how clear it is, not how much of it is there.
     fn opacity(&mut self, r: &MtlRecord, diffuse: ColorInput) -> ScalarInput {
-        let is_glass = matches!(r.illumination.map(|number| number as u32), Some(4 | 6 | 7 | 9));
         let dissolve = r.dissolve.or(r.transparency.map(|t| 1.0 - t));
-        let said = if is_glass { None } else { dissolve };
+        let said = if is_glass(r) { None } else { dissolve };
         let mut opacity = self.scalar(r, "d", said, &r.dissolve_map, 1.0);
         if r.dissolve_map.is_none() {
             opacity.texture = diffuse.texture.map(|texture| (texture, Channel::Alpha));
@@ -255,6 +256,21 @@ impl Context<'_> {
     fn warn(&mut self, kind: &'static str, line: usize, message: impl FnOnce() -> String) {
         self.warnings.add(kind, Location::new(self.library, line), message);
     }
+}
+
+/// The illumination model; 2 (diffuse with highlights) where nothing is said.
+fn illumination(r: &MtlRecord) -> u32 {
+    r.illumination.map_or(2, |number| number as u32)
+}
+
+fn is_glass(r: &MtlRecord) -> bool {
+    matches!(illumination(r), 4 | 6 | 7 | 9)
+}
+
+/// Whether `Ks` and `Ns` mean a highlight; exporters that mean none write black, or an exponent of 1.
+fn has_highlight(r: &MtlRecord) -> bool {
+    let has_color = r.specular_map.is_some() || r.specular.is_some_and(|ks| !ks.is_black());
+    has_color && r.exponent.is_none_or(|exponent| exponent > 1.0)
 }
 
 fn has_pbr_keys(r: &MtlRecord) -> bool {

@@ -6,9 +6,9 @@
 use super::image_request::{ImageRequest, ImageTable};
 use super::mtl::{MtlRecord, read_mtl};
 use super::mtl_material::Context;
-use super::obj_filter::{Named, Scan};
 use super::obj_mesh::{build_meshes, snapped_origin};
 use super::obj_read::{ObjFile, read_obj};
+use super::obj_scan::{Named, Scan};
 use super::paths::{Found, find_file};
 use super::warning_list::WarningList;
 use crate::error::{Error, Location, Result, Warning};
@@ -47,10 +47,11 @@ pub fn load_obj(path: &Path) -> Result<LoadedModel> {
     }
 
     let mut inputs = vec![path.to_path_buf()];
-    let libraries = Libraries::read(path, &scan.libraries, &mut inputs, &mut warnings);
+    let libraries = Libraries::read(path, &scan.libraries.list, &mut inputs, &mut warnings);
     let mut images = ImageTable::new();
     let materials = scan
         .materials
+        .list
         .iter()
         .map(|used| libraries.material(path, used, &mut images, &mut warnings))
         .collect();
@@ -102,34 +103,11 @@ impl Libraries {
         inputs: &mut Vec<PathBuf>,
         warnings: &mut WarningList,
     ) -> Self {
-        let folder = model.parent().unwrap_or(Path::new(""));
-        let mut seen = HashSet::new();
         let mut libraries = Self { files: Vec::new(), index: HashMap::new() };
+        let mut seen = HashSet::new();
         for statement in statements {
             let location = Location::new(model, statement.line);
-            for found in find_libraries(folder, &statement.name) {
-                let path = match found {
-                    Found::AsNamed(path) => path,
-                    Found::Elsewhere(path) => {
-                        warnings.add("libraries found elsewhere", location.clone(), || {
-                            format!(
-                                "{:?} is not there; read {} instead",
-                                statement.name,
-                                path.display()
-                            )
-                        });
-                        path
-                    }
-                    Found::Missing(path) => {
-                        warnings.add("libraries missing", location.clone(), || {
-                            format!(
-                                "material library {} does not exist; its materials are grey",
-                                path.display()
-                            )
-                        });
-                        continue;
-                    }
-                };
+            for path in find_libraries(statement, &location, warnings) {
                 if !seen.insert(path.canonicalize().unwrap_or_else(|_| path.clone())) {
                     continue;
                 }
@@ -197,15 +175,41 @@ impl Libraries {
     }
 }
 
-/// The files that the text behind one `mtllib` names: one file whose name may have spaces, or several.
-fn find_libraries(folder: &Path, names: &str) -> Vec<Found> {
-    let whole = find_file(folder, names);
-    if matches!(whole, Found::Missing(_)) && names.split_whitespace().nth(1).is_some() {
+/// The files that one `mtllib` at `location` names: one file whose name may have spaces, or several.
+fn find_libraries(
+    statement: &Named,
+    location: &Location,
+    warnings: &mut WarningList,
+) -> Vec<PathBuf> {
+    let folder = location.path.parent().unwrap_or(Path::new(""));
+    let names = &statement.name;
+    let is_missing = |found: &Found| matches!(found, Found::Missing(_));
+    let is_as_named = |found: &Found| matches!(found, Found::AsNamed(_));
+    let mut found = vec![find_file(folder, names)];
+    if !is_as_named(&found[0]) {
         let parts: Vec<Found> =
             names.split_whitespace().map(|name| find_file(folder, name)).collect();
-        if parts.iter().any(|part| !matches!(part, Found::Missing(_))) {
-            return parts;
+        if parts.iter().any(is_as_named) || is_missing(&found[0]) && !parts.iter().all(is_missing) {
+            found = parts;
         }
     }
-    vec![whole]
+    let mut paths = Vec::new();
+    for file in found {
+        match file {
+            Found::AsNamed(path) => paths.push(path),
+            Found::Elsewhere(path) => {
+                warnings.add("libraries found elsewhere", location.clone(), || {
+                    format!("{names:?} is not there; {} is read instead", path.display())
+                });
+                paths.push(path);
+            }
+            Found::Missing(path) => {
+                warnings.add("libraries missing", location.clone(), || {
+                    let path = path.display().to_string();
+                    format!("material library {path:?} does not exist; its materials are grey")
+                });
+            }
+        }
+    }
+    paths
 }

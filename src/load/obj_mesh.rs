@@ -2,9 +2,9 @@
 //!
 //! Must not know where polygons come from, nor what their materials are.
 
-use super::obj_filter::{Attributes, Face};
 use super::obj_polygon::{Cut, Triangulator};
 use super::obj_read::PolygonGroup;
+use super::obj_scan::{Attributes, Face};
 use super::warning_list::WarningList;
 use crate::error::{Error, Location, Result};
 use crate::math::DVec3;

@@ -6,7 +6,8 @@
 //! have. It holds every position as `f64` until the end, and each group again: about 100 bytes a vertex.
 
 use super::line_filter::Statements;
-use super::obj_filter::{Attributes, ObjFilter, Scan};
+use super::obj_filter::ObjFilter;
+use super::obj_scan::{Attributes, Scan};
 use crate::error::{Error, Result};
 use std::path::Path;
 

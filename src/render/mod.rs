@@ -17,7 +17,7 @@ use crate::ledger::Ledger;
 use crate::trace::{Block, PixelSample, Tracer, Wavefront};
 use crate::world::CutOuts;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
 /// What is rendered, and with what means.
@@ -104,18 +104,19 @@ fn run<A: Accelerator, F: HitFilter>(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Rendered> {
     let start = Instant::now();
-    let blocks = blocks(job);
-    let next = AtomicUsize::new(0);
+    let blocks = Blocks::new(job);
+    let next = AtomicU64::new(0);
     let total = Mutex::new((Film::new(job.region), Ledger::default(), NonFinite::default()));
     let stopped = || job.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
 
     thread_pool(job.threads)?.broadcast(|_| {
         let mut wavefront = Wavefront::new(job.batch);
         let mut non_finite = NonFinite::default();
+        let mut film = Film::new(Region { start: [0; 2], end: [0; 2] });
         while !stopped() {
             let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
-            let mut film = Film::new(Region { start: block.start, end: block.end });
-            wavefront.run(tracer, filter, block, |sample| {
+            film.restart(Region { start: block.start, end: block.end });
+            wavefront.run(tracer, filter, &block, |sample| {
                 if sample.radiance.is_finite() {
                     film.add(sample.pixel, sample.sample, sample.radiance, sample.coverage);
                 } else {
@@ -137,27 +138,68 @@ fn run<A: Accelerator, F: HitFilter>(
         Ok(total) => total,
         Err(poisoned) => poisoned.into_inner(),
     };
-    let interrupted = next.into_inner() < blocks.len();
+    let interrupted = blocks.get(next.into_inner()).is_some();
     Ok(Rendered { film, ledger, seconds: start.elapsed().as_secs_f64(), non_finite, interrupted })
 }
 
-/// All blocks in the order in which they are taken: every tile of a pass, then the next pass.
-fn blocks(job: &RenderJob<'_>) -> Vec<Block> {
+/// The blocks of a job in the order in which they are taken: every tile of a pass, then the next pass.
+/// Computed, not stored: a job may have any number of samples.
+struct Blocks {
+    tiles: Vec<Region>,
+    samples_per_pixel: u64,
+}
+
+impl Blocks {
+    /// Samples of the largest pass.
     const LARGEST_PASS: u64 = 32;
-    let tiles = job.region.tiles(TILE);
-    let mut blocks = Vec::new();
-    let mut first_sample = 0;
-    while first_sample < job.samples_per_pixel {
-        // 1, 1, 2, 4, ... 32, 32, ...: a whole picture at once, then ever better ones.
-        let size = first_sample.clamp(1, LARGEST_PASS);
-        let end_sample = (first_sample + size).min(job.samples_per_pixel);
-        blocks.extend(tiles.iter().map(|t| Block {
-            start: t.start,
-            end: t.end,
-            first_sample,
-            end_sample,
-        }));
-        first_sample = end_sample;
+    /// Number of the first pass of that size: the passes before it are 1, 1, 2, 4, 8 and 16 samples, so
+    /// that there is a whole picture at once, and then ever better ones.
+    const FIRST_LARGE: u64 = 6;
+
+    fn new(job: &RenderJob<'_>) -> Self {
+        Self { tiles: job.region.tiles(TILE), samples_per_pixel: job.samples_per_pixel }
     }
-    blocks
+
+    /// First sample of a pass.
+    fn first_sample(pass: u64) -> u64 {
+        match pass {
+            0 => 0,
+            1..Self::FIRST_LARGE => 1 << (pass - 1),
+            _ => (pass - Self::FIRST_LARGE + 1).saturating_mul(Self::LARGEST_PASS),
+        }
+    }
+
+    /// Block number `n`, while there are samples left.
+    fn get(&self, n: u64) -> Option<Block> {
+        let tiles = self.tiles.len() as u64;
+        let tile = self.tiles.get((n % tiles) as usize)?;
+        let pass = n / tiles;
+        let first_sample = Self::first_sample(pass);
+        let end_sample = Self::first_sample(pass + 1).min(self.samples_per_pixel);
+        let (start, end) = (tile.start, tile.end);
+        (first_sample < end_sample).then_some(Block { start, end, first_sample, end_sample })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_take_every_sample_of_every_pixel_once() {
+        let region = Region { start: [3, 5], end: [70, 41] };
+        for samples_per_pixel in [1, 2, 5, 31, 32, 33, 200] {
+            let blocks = Blocks { tiles: region.tiles(TILE), samples_per_pixel };
+            let mut taken = vec![0; region.pixels()];
+            let mut last_sample = 0;
+            for block in (0..).map_while(|n| blocks.get(n)) {
+                assert!(block.first_sample >= last_sample, "passes are in order");
+                last_sample = block.first_sample;
+                for (pixel, _) in block.iter() {
+                    taken[region.index(pixel)] += 1;
+                }
+            }
+            assert!(taken.iter().all(|&n| n == samples_per_pixel), "{samples_per_pixel}");
+        }
+    }
 }

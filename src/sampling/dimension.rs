@@ -5,8 +5,6 @@
 pub enum Dimension {
     /// Position within the pixel filter's support (two).
     Film,
-    /// Sign of the filter's lobe (one).
-    FilmSign,
     /// Point on the lens (two).
     Lens,
     /// Which light is sampled (one).
@@ -43,8 +41,7 @@ impl Dimension {
         const PER_BOUNCE: u32 = 8;
         match self {
             Self::Film => 0,
-            Self::FilmSign => 1,
-            Self::Lens => 2,
+            Self::Lens => 1,
             Self::LightSelect { bounce } => PER_BOUNCE * (bounce + 1),
             Self::LightPosition { bounce } => PER_BOUNCE * (bounce + 1) + 1,
             Self::ScatterLobe { bounce } => PER_BOUNCE * (bounce + 1) + 2,

@@ -11,13 +11,13 @@ use std::f32::consts::{FRAC_1_PI, PI};
 #[inline]
 pub fn disc([u, v]: [f32; 2]) -> Vec2 {
     let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
-    if x == 0.0 && y == 0.0 {
-        return Vec2::ZERO;
-    }
-    // In each quarter the angle is a fraction of an eighth turn of the ratio of the coordinates.
-    let (radius, turns) =
-        if x.abs() > y.abs() { (x, 0.125 * (y / x)) } else { (y, 0.25 - 0.125 * (x / y)) };
-    let (sin, cos) = fun::sin_cos_turns(turns);
+    // In each quarter the angle from the nearer axis is an eighth turn times the ratio of the
+    // coordinates. Selects instead of branches: which quarter it is, is random.
+    let steep = y.abs() > x.abs();
+    let (radius, other) = if steep { (y, x) } else { (x, y) };
+    let ratio = other / if radius == 0.0 { 1.0 } else { radius };
+    let (sin, cos) = fun::sin_cos_eighth(ratio);
+    let (sin, cos) = if steep { (cos, sin) } else { (sin, cos) };
     Vec2::new(radius * cos, radius * sin)
 }
 

@@ -3,21 +3,25 @@
 //! A block is a rectangle of pixels and a range of samples; what comes out is one [`PixelSample`] a path.
 //! The order in which they come out means nothing: the film adds them exactly.
 
-mod aov;
 mod path;
-pub mod naive;
+mod group;
+mod light_stage;
+mod scatter_stage;
 mod wavefront;
+pub mod naive;
+mod aov;
 
 pub use aov::{FirstHit, first_hit};
 pub use wavefront::Wavefront;
 
 use crate::accel::Accelerator;
+use crate::bsdf::Bsdf;
 use crate::camera::Camera;
 use crate::filter::FilterSampler;
 use crate::geometry::PrimitiveId;
-use crate::math::Rgb;
+use crate::math::{Rgb, Vec3};
 use crate::sampling::{Dimension, PathSampler, Sampler};
-use crate::world::World;
+use crate::world::{SurfaceInteraction, World};
 
 /// Everything a path needs to know; shared by all workers.
 pub struct Tracer<'a, A> {
@@ -57,15 +61,14 @@ impl Block {
         width * height * (self.end_sample - self.first_sample)
     }
 
-    /// Pixel and sample of path number `n`: all samples of a pixel, then the next pixel.
+    /// Pixel and sample of every path: all samples of a pixel, then the next pixel.
     #[inline]
-    pub fn path(&self, n: u64) -> ([u32; 2], u64) {
-        let samples = self.end_sample - self.first_sample;
-        let (pixel, sample) = (n / samples, n % samples);
-        let width = u64::from(self.end[0] - self.start[0]);
-        let x = self.start[0] + (pixel % width) as u32;
-        let y = self.start[1] + (pixel / width) as u32;
-        ([x, y], self.first_sample + sample)
+    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], u64)> + use<> {
+        let Self { start, end, first_sample, end_sample } = *self;
+        (start[1]..end[1]).flat_map(move |y| {
+            (start[0]..end[0])
+                .flat_map(move |x| (first_sample..end_sample).map(move |sample| ([x, y], sample)))
+        })
     }
 }
 
@@ -106,6 +109,17 @@ impl<A: Accelerator> Tracer<'_, A> {
     }
 }
 
+/// A path vertex on a surface.
+#[derive(Clone, Copy)]
+struct Vertex {
+    /// Slot of its path.
+    slot: u32,
+    at: SurfaceInteraction,
+    bsdf: Bsdf,
+    /// Direction back along the ray, in the shading frame.
+    wo: Vec3,
+}
+
 /// What [`Tracer::camera_ray`] starts a path with.
 pub(crate) struct CameraStart {
     pub(crate) sampler: PathSampler,
@@ -123,6 +137,10 @@ pub(crate) enum RayKind {
     /// Asks whether a light is visible.
     Shadow = 1,
 }
+
+/// Growth of the ray cone (radians) at a rough scattering: textures seen by scattered light are looked up
+/// in coarser levels, far below the width of the scattering lobe itself.
+const SCATTERED_SPREAD: f32 = 0.05;
 
 /// The power heuristic with exponent 2 (Veach 1997, section 9.2.4): the weight of a sample that its
 /// own strategy draws with density `own` and the other one with density `other`.

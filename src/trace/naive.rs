@@ -3,8 +3,7 @@
 //! It draws the same named numbers, so the two agree path by path. It shares the models and the world
 //! with the wavefront, and nothing of its control flow. Not for rendering.
 
-use super::wavefront::SCATTERED_SPREAD;
-use super::{RayKind, Tracer, power_heuristic, survival_probability};
+use super::{RayKind, SCATTERED_SPREAD, Tracer, power_heuristic, survival_probability};
 use crate::accel::{Accelerator, HitFilter};
 use crate::bsdf::Scatter;
 use crate::geometry::{Hit, Ray};

@@ -30,8 +30,10 @@ pub(super) struct Path {
     pub(super) cone_spread: f32,
     /// Absorption coefficient of what the ray runs through.
     pub(super) absorption: Rgb,
-    /// Number of the path in its block.
-    pub(super) number: u64,
+    /// Where it began.
+    pub(super) pixel: [u32; 2],
+    /// Which of the pixel's samples it is.
+    pub(super) sample: u64,
     /// Filter weight.
     pub(super) weight: f32,
     /// 1 once the camera ray has met a surface.
@@ -43,7 +45,7 @@ pub(super) struct Path {
 impl Path {
     /// The path that starts with a camera ray.
     #[inline]
-    pub(super) fn begin(start: &CameraStart, number: u64) -> Self {
+    pub(super) fn begin(start: &CameraStart, pixel: [u32; 2], sample: u64) -> Self {
         Self {
             ray: start.ray,
             throughput: Rgb::WHITE,
@@ -57,7 +59,8 @@ impl Path {
             cone_width: start.width,
             cone_spread: start.spread,
             absorption: Rgb::BLACK,
-            number,
+            pixel,
+            sample,
             weight: start.weight,
             coverage: 0.0,
             last_hit: PrimitiveId::MISS,

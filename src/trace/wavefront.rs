@@ -9,25 +9,16 @@
 //! change no bit. Source of the estimator: Veach 1997, chapters 9 and 10 (light and BSDF sampling,
 //! combined by the power heuristic).
 
+use super::group::Groups;
+use super::light_stage::LightStage;
 use super::path::Path;
-use super::{Block, PixelSample, RayKind, Tracer, power_heuristic, survival_probability};
+use super::scatter_stage::ScatterStage;
+use super::{Block, PixelSample, Tracer, Vertex, power_heuristic, survival_probability};
 use crate::accel::{Accelerator, HitFilter};
-use crate::bsdf::{Bsdf, Scatter};
 use crate::geometry::{Hit, Ray};
 use crate::ledger::{Clock, Ledger, Stage};
-use crate::math::{Rgb, Vec3, fun};
+use crate::math::{Rgb, fun};
 use crate::sampling::Dimension;
-use crate::world::SurfaceInteraction;
-
-/// A path vertex on a surface.
-#[derive(Clone, Copy)]
-struct Vertex {
-    slot: u32,
-    at: SurfaceInteraction,
-    bsdf: Bsdf,
-    /// Direction back along the ray, in the shading frame.
-    wo: Vec3,
-}
 
 /// The arrays of one worker. They are allocated once; the bounce loop allocates nothing.
 pub struct Wavefront {
@@ -38,6 +29,7 @@ pub struct Wavefront {
     rays: Vec<Ray>,
     hits: Vec<Hit>,
     vertices: Vec<Vertex>,
+    groups: Groups,
     shadow_rays: Vec<Ray>,
     /// Slot, and what the light adds to it if it is visible.
     shadow_gains: Vec<(u32, Rgb)>,
@@ -63,6 +55,7 @@ impl Wavefront {
             rays: Vec::with_capacity(capacity),
             hits: Vec::with_capacity(capacity),
             vertices: Vec::with_capacity(capacity),
+            groups: Groups::with_capacity(capacity),
             shadow_rays: Vec::with_capacity(capacity),
             shadow_gains: Vec::with_capacity(capacity),
             blocked: Vec::with_capacity(capacity),
@@ -80,13 +73,13 @@ impl Wavefront {
         block: &Block,
         mut sink: impl FnMut(&PixelSample),
     ) {
-        let mut next = 0;
+        let mut starts = block.iter();
         let mut clock = Clock::start();
         self.slots.clear();
         self.free.clear();
         self.active.clear();
         loop {
-            self.generate(tracer, block, &mut next, &mut clock);
+            self.generate(tracer, &mut starts, &mut clock);
             if self.active.is_empty() {
                 return;
             }
@@ -97,7 +90,7 @@ impl Wavefront {
             self.shadow(tracer, filter, &mut clock);
             self.scatter(tracer, &mut clock);
             self.roulette(&mut clock);
-            self.accumulate(block, &mut sink, &mut clock);
+            self.accumulate(&mut sink, &mut clock);
         }
     }
 
@@ -105,20 +98,22 @@ impl Wavefront {
     fn generate<A: Accelerator>(
         &mut self,
         tracer: &Tracer<'_, A>,
-        block: &Block,
-        next: &mut u64,
+        starts: &mut impl Iterator<Item = ([u32; 2], u64)>,
         clock: &mut Clock,
     ) {
         let before = self.active.len();
-        while self.active.len() < self.capacity && *next < block.paths() {
-            let (pixel, sample) = block.path(*next);
-            let path = Path::begin(&tracer.camera_ray(pixel, sample), *next);
-            *next += 1;
-            let slot = self.free.pop().unwrap_or_else(|| {
-                self.slots.push(path);
-                self.slots.len() as u32 - 1
-            });
-            self.slots[slot as usize] = path;
+        for (pixel, sample) in starts.take(self.capacity - before) {
+            let path = Path::begin(&tracer.camera_ray(pixel, sample), pixel, sample);
+            let slot = match self.free.pop() {
+                Some(slot) => {
+                    self.slots[slot as usize] = path;
+                    slot
+                }
+                None => {
+                    self.slots.push(path);
+                    self.slots.len() as u32 - 1
+                }
+            };
             self.active.push(slot);
         }
         let begun = self.active.len() - before;
@@ -206,50 +201,21 @@ impl Wavefront {
         clock.lap(&mut self.ledger, Stage::Emit, count);
     }
 
-    /// Picks a light for every vertex that can scatter its light, and evaluates the BSDF towards it.
+    /// Shadow rays towards a light for every vertex that can scatter its light.
     fn sample_lights<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
+        self.groups.sort(&self.vertices);
         self.shadow_rays.clear();
         self.shadow_gains.clear();
-        let lights = &tracer.world.lights;
-        if lights.is_empty() {
+        if tracer.world.lights.is_empty() {
             return;
         }
-        for vertex in &self.vertices {
-            if vertex.bsdf.is_delta() {
-                continue;
-            }
-            let path = &self.slots[vertex.slot as usize];
-            let bounce = path.bounce;
-            let select = path.sampler.one(Dimension::LightSelect { bounce });
-            let position = path.sampler.two(Dimension::LightPosition { bounce });
-            let Some(light) = lights.sample(tracer.world, vertex.at.point, select, position) else {
-                continue;
-            };
-            let wi = vertex.at.frame.local_from_world(light.direction);
-            // Shading and geometric normal must agree on which side the light is, or it would leak.
-            if (wi.z > 0.0) != (vertex.at.n_geometric.dot(light.direction) > 0.0) {
-                continue;
-            }
-            let value = vertex.bsdf.evaluate(vertex.wo, wi);
-            if value.f_cos.is_black() {
-                continue;
-            }
-            let weight = if light.is_delta {
-                1.0
-            } else {
-                power_heuristic(light.pdf_solid_angle, value.pdf_solid_angle)
-            };
-            let factor = weight / light.pdf_solid_angle;
-            let gain = path.throughput * value.f_cos * light.radiance * factor;
-            let origin = vertex.at.origin_towards(light.direction);
-            let mut ray = match light.end {
-                Some(end) => Ray::between(origin, end),
-                None => Ray::new(origin, light.direction),
-            };
-            ray.id = path.sampler.ray_id(bounce, RayKind::Shadow as u32);
-            self.shadow_rays.push(ray);
-            self.shadow_gains.push((vertex.slot, gain));
-        }
+        self.groups.each(&mut LightStage {
+            tracer,
+            vertices: &self.vertices,
+            slots: &self.slots,
+            shadow_rays: &mut self.shadow_rays,
+            shadow_gains: &mut self.shadow_gains,
+        });
         clock.lap(&mut self.ledger, Stage::SampleLights, self.vertices.len());
     }
 
@@ -277,14 +243,13 @@ impl Wavefront {
     /// Chooses where each path goes on.
     fn scatter<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
         self.active.clear();
-        for vertex in &self.vertices {
-            let path = &mut self.slots[vertex.slot as usize];
-            if scatter_path(path, vertex, tracer) {
-                self.active.push(vertex.slot);
-            } else {
-                self.finished.push(vertex.slot);
-            }
-        }
+        self.groups.each(&mut ScatterStage {
+            tracer,
+            vertices: &self.vertices,
+            slots: &mut self.slots,
+            active: &mut self.active,
+            finished: &mut self.finished,
+        });
         clock.lap(&mut self.ledger, Stage::Scatter, self.vertices.len());
     }
 
@@ -309,18 +274,12 @@ impl Wavefront {
     }
 
     /// Hands finished paths over and frees their slots.
-    fn accumulate(
-        &mut self,
-        block: &Block,
-        sink: &mut impl FnMut(&PixelSample),
-        clock: &mut Clock,
-    ) {
+    fn accumulate(&mut self, sink: &mut impl FnMut(&PixelSample), clock: &mut Clock) {
         for &slot in &self.finished {
             let path = &self.slots[slot as usize];
-            let (pixel, sample) = block.path(path.number);
             sink(&PixelSample {
-                pixel,
-                sample,
+                pixel: path.pixel,
+                sample: path.sample,
                 radiance: path.radiance * path.weight,
                 coverage: path.coverage * path.weight,
                 bounces: path.bounce,
@@ -331,40 +290,3 @@ impl Wavefront {
         clock.lap(&mut self.ledger, Stage::Accumulate, self.finished.len());
     }
 }
-
-/// Samples the BSDF and sets the path's next ray; false where the path ends.
-#[inline]
-fn scatter_path<A: Accelerator>(path: &mut Path, vertex: &Vertex, tracer: &Tracer<'_, A>) -> bool {
-    let bounce = path.bounce;
-    let lobe = path.sampler.one(Dimension::ScatterLobe { bounce });
-    let direction = path.sampler.two(Dimension::ScatterDirection { bounce });
-    let Some(sample) = vertex.bsdf.sample(vertex.wo, lobe, direction) else {
-        return false;
-    };
-    let wi = vertex.at.frame.world_from_local(sample.wi);
-    if (sample.wi.z > 0.0) != (vertex.at.n_geometric.dot(wi) > 0.0) {
-        return false;
-    }
-    path.throughput *= sample.weight;
-    if path.throughput.is_black() {
-        return false;
-    }
-    if sample.wi.z < 0.0 {
-        let inside = tracer.world.absorption(vertex.at.material);
-        path.absorption = inside.filter(|_| vertex.at.entering).unwrap_or(Rgb::BLACK);
-    }
-    if !sample.is_delta {
-        path.cone_spread += SCATTERED_SPREAD;
-    }
-    path.pdf_solid_angle = sample.pdf_solid_angle;
-    path.is_delta = sample.is_delta;
-    path.eta_scale *= sample.eta_scale;
-    path.bounce += 1;
-    path.ray = Ray::new(vertex.at.origin_towards(wi), wi);
-    path.ray.id = path.sampler.ray_id(path.bounce, RayKind::Path as u32);
-    true
-}
-
-/// Growth of the ray cone (radians) at a rough scattering: textures seen by scattered light are looked up
-/// in coarser levels, far below the width of the scattering lobe itself.
-pub(super) const SCATTERED_SPREAD: f32 = 0.05;

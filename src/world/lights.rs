@@ -89,6 +89,12 @@ impl Lights {
         self.selection.is_empty()
     }
 
+    /// Whether [`Lights::sample`] depends on `select`: not where there is one light only.
+    #[inline]
+    pub fn needs_choice(&self) -> bool {
+        self.selection.len() > 1
+    }
+
     /// Number of emissive triangles.
     pub fn emitter_count(&self) -> usize {
         self.emitters.len()
@@ -136,8 +142,8 @@ impl Lights {
     pub fn at_infinity(&self, direction: Vec3) -> impl Iterator<Item = (Rgb, f32)> {
         self.lights.iter().enumerate().filter(|(_, light)| light.is_seen_at_infinity()).map(
             move |(i, light)| {
-                let pdf = light.pdf_solid_angle(direction) * self.selection.pmf(i);
-                (light.radiance(direction), pdf)
+                let (radiance, pdf) = light.radiance_and_pdf(direction);
+                (radiance, pdf * self.selection.pmf(i))
             },
         )
     }

@@ -134,7 +134,10 @@ fn furnace(samples: u64, weight: impl Fn([f32; 2], f32) -> f32) -> (f64, f64) {
         let total: f64 = (0..samples)
             .map(|s| {
                 let path = sampler.path(pixel % 32, pixel / 32, s);
-                f64::from(weight(path.two(Dimension::Film), path.one(Dimension::FilmSign)))
+                f64::from(weight(
+                    path.two(Dimension::Film),
+                    path.one(Dimension::Roulette { bounce: 0 }),
+                ))
             })
             .sum();
         let mean = total / samples as f64;

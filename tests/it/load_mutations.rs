@@ -1,6 +1,8 @@
 //! Valid files with bytes flipped, cut and inserted: whatever comes of it loads, or is an error; never a
 //! panic. What loads has sound meshes, and the same surface as the slow reference parser finds.
 
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may unwrap, and so may its helpers")]
+
 use crate::support::reference_obj::{Face, assert_same, parse};
 use glint::load::{ImageTable, LoadedModel, load_mtl, load_obj};
 use glint::math::Rgb;

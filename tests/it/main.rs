@@ -1,10 +1,15 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
 mod accel;
+mod allocation;
+mod bsdf;
+mod camera;
+mod cli;
 mod closed_forms;
 mod determinism;
 mod filter;
 mod image;
+mod light;
 mod load_mutations;
 mod mtl;
 mod obj;

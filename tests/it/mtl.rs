@@ -1,5 +1,7 @@
 //! MTL libraries: every key changes the material that it should, and no line can do worse than be dropped.
 
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may unwrap, and so may its helpers")]
+
 use glint::error::Warning;
 use glint::load::{ColorSpace, ImageRequest, ImageTable, load_mtl};
 use glint::math::Rgb;

@@ -1,5 +1,7 @@
 //! OBJ files of every odd kind, against the slow parser of `support::reference_obj`.
 
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may unwrap, and so may its helpers")]
+
 use crate::support::reference_obj::{assert_same, parse};
 use glint::error::{Error, Result};
 use glint::load::{LoadedModel, load_obj};
@@ -231,6 +233,7 @@ fn libraries_are_found_and_read_once() {
         ("mtllib b.mtl a.mtl b.mtl", ["a.mtl", "b.mtl"]),
         ("mtllib my lib.mtl\nmtllib \"b.mtl\"", ["my lib.mtl", "b.mtl"]),
         ("mtllib sub\\a.mtl\nmtllib ./b.mtl", ["sub/a.mtl", "b.mtl"]),
+        ("mtllib a.mtl ./b.mtl", ["a.mtl", "b.mtl"]),
     ] {
         let loaded = loaded_with(mtllib, &[(names[0], a), (names[1], b)]);
         assert!(loaded.warnings.is_empty(), "{mtllib}: {:?}", loaded.warnings);
@@ -346,6 +349,28 @@ fn loading_twice_gives_the_same() {
     files.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).unwrap());
     let load = || format!("{:?}", load_obj(&folder.path().join("m.obj")).unwrap());
     assert_eq!(load(), load());
+}
+
+#[test]
+fn the_comparison_notices_each_difference() {
+    let text = square("f 1 2 3\nf 1/1/1 2/2/1 3/3/1 4/4/1\nf 1 3 4\n");
+    let loaded = load(&[("m.obj", text.as_bytes())]).unwrap();
+    for (from, to) in [
+        ("v 1 1 0", "v 1 1 1e-6"),
+        ("vt 1 1", "vt 1 1.000001"),
+        ("vn 0 0 1", "vn 0 1e-5 1"),
+        ("f 1 2 3", "f 1 3 2"),
+        ("f 1 2 3", "\nf 1 2 3"),
+        ("f 1 2 3", "usemtl a\nf 1 2 3"),
+        ("f 1 2 3\n", "\n"),
+        ("f 1 3 4", "f 1 3 4\nf 1 3 4"),
+        ("f 1 2 3\n", "f 1//1 2//1 3//1\n"),
+        ("4/4/1", "1/1/1"),
+    ] {
+        let other = parse(text.replacen(from, to, 1).as_bytes());
+        let compare = || assert_same(&loaded, &other, "expected to differ");
+        assert!(std::panic::catch_unwind(compare).is_err(), "{from:?} for {to:?} is not noticed");
+    }
 }
 
 /// The folder of real models: `GLINT_MODELS`, or beside the repository; `None` when there is none.

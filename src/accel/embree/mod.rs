@@ -25,7 +25,7 @@ mod sys {
 
 use super::{Accelerator, BuildStats, HitFilter};
 use crate::error::Result;
-use crate::geometry::{Geometry, Hit, Ray};
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use device::Device;
 use scene::EmbreeScene;
 use std::sync::Arc;
@@ -51,6 +51,12 @@ impl EmbreeAccelerator {
         let scene = EmbreeScene::build(&device, &geometry)?;
         let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: device.bytes() };
         Ok(Self { scene, device, geometry, stats })
+    }
+
+    /// Embree's own part of [`Accelerator::closest`], without filters: which primitive each ray hits. `ids`
+    /// is at least as long as `rays`. For benchmarks.
+    pub fn closest_ids(&self, rays: &[Ray], ids: &mut [PrimitiveId]) {
+        query::closest_ids(&self.scene, &self.geometry, rays, ids);
     }
 
     /// Version of the linked library, for example "3.13.5".

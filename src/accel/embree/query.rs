@@ -2,8 +2,8 @@
 
 use super::scene::EmbreeScene;
 use super::sys;
-use crate::accel::{HitFilter, resolve};
-use crate::geometry::{Geometry, Hit, Ray};
+use crate::accel::{AcceptAll, HitFilter, resolve};
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use std::ffi::{c_int, c_uint, c_void};
 
 /// Rays handed to the shim in one call: large enough to hide the call, small enough to stay in L1.
@@ -60,35 +60,61 @@ pub(super) fn closest<F: HitFilter>(
     filter: &F,
     hits: &mut [Hit],
 ) {
-    let mut buffer = [sys::RTCRayHit::default(); CHUNK];
+    let mut ids = [PrimitiveId::MISS; CHUNK];
     for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
-        for (place, ray) in rays.iter().enumerate() {
-            buffer[place].ray = to_embree(ray, place);
-            buffer[place].hit.geomID = u32::MAX;
-            buffer[place].hit.instID = [u32::MAX; 1];
-        }
-        let query = FilterQuery { filter, rays, geometry, scene };
-        // SAFETY: the scene is committed; the buffer holds rays.len() initialised, aligned ray-hits; the
-        // query outlives the call and is of the type that accept::<F> expects.
-        unsafe {
-            sys::glint_closest(
-                scene.handle(),
-                buffer.as_mut_ptr(),
-                rays.len() as u32,
-                Some(accept::<F>),
-                std::ptr::from_ref(&query).cast(),
-            );
-        }
+        closest_chunk(scene, geometry, rays, filter, &mut ids);
         // A loop of its own: the vertex fetches of neighbouring hits overlap.
-        for ((ray, answer), hit) in rays.iter().zip(&buffer).zip(hits) {
-            let found = &answer.hit;
-            *hit = if found.geomID == u32::MAX {
-                Hit::MISS
-            } else {
-                let id = scene.primitive_id(found.instID[0], found.geomID, found.primID);
-                resolve(geometry, ray, id)
-            };
+        for ((ray, id), hit) in rays.iter().zip(ids).zip(hits) {
+            *hit = if id == PrimitiveId::MISS { Hit::MISS } else { resolve(geometry, ray, id) };
         }
+    }
+}
+
+/// See [`super::EmbreeAccelerator::closest_ids`].
+pub(super) fn closest_ids(
+    scene: &EmbreeScene,
+    geometry: &Geometry,
+    rays: &[Ray],
+    ids: &mut [PrimitiveId],
+) {
+    for (rays, ids) in rays.chunks(CHUNK).zip(ids.chunks_mut(CHUNK)) {
+        closest_chunk(scene, geometry, rays, &AcceptAll, ids);
+    }
+}
+
+/// The primitives that at most [`CHUNK`] rays hit.
+fn closest_chunk<F: HitFilter>(
+    scene: &EmbreeScene,
+    geometry: &Geometry,
+    rays: &[Ray],
+    filter: &F,
+    ids: &mut [PrimitiveId],
+) {
+    let mut buffer = [sys::RTCRayHit::default(); CHUNK];
+    for (place, ray) in rays.iter().enumerate() {
+        buffer[place].ray = to_embree(ray, place);
+        buffer[place].hit.geomID = u32::MAX;
+        buffer[place].hit.instID = [u32::MAX; 1];
+    }
+    let query = FilterQuery { filter, rays, geometry, scene };
+    // SAFETY: the scene is committed; the buffer holds rays.len() initialised, aligned ray-hits; the
+    // query outlives the call and is of the type that accept::<F> expects.
+    unsafe {
+        sys::glint_closest(
+            scene.handle(),
+            buffer.as_mut_ptr(),
+            rays.len() as u32,
+            Some(accept::<F>),
+            std::ptr::from_ref(&query).cast(),
+        );
+    }
+    for (answer, id) in buffer[..rays.len()].iter().zip(ids) {
+        let found = &answer.hit;
+        *id = if found.geomID == u32::MAX {
+            PrimitiveId::MISS
+        } else {
+            scene.primitive_id(found.instID[0], found.geomID, found.primID)
+        };
     }
 }
 

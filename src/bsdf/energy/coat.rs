@@ -27,7 +27,7 @@ pub(in super::super) fn coat_excess(base: Option<&Ggx>, coat: Option<&Ggx>, wo: 
 
 /// Over (cosine, roughness of the base, roughness of the coat).
 static EXCESS: LazyLock<Grid<3, 1>> = LazyLock::new(|| {
-    Grid::new([15, 9, 7], |[c, r, coat]| {
+    Grid::new([15, 13, 7], |[c, r, coat]| {
         let lobe = |alpha| Ggx { alpha_x: alpha, alpha_y: alpha };
         let (base, coat) = (lobe(alpha_at(r)), lobe(alpha_at(coat)));
         let wo = direction(cosine_at(c, base.alpha_x), 1.0);

@@ -75,7 +75,7 @@ fn eta_at(coordinate: f32) -> f32 {
 /// `Single::white * F(Single::cos_fresnel)`, a number near 1 when eta > 1.
 static DIRECTIONAL: LazyLock<Grid<3, 2>> = LazyLock::new(|| {
     // An even number of nodes leaves out eta = 1, where the half vector of a transmission is undefined.
-    Grid::new([15, 11, 14], |[c, r, e]| {
+    Grid::new([17, 13, 22], |[c, r, e]| {
         let (alpha, eta) = (alpha_at(r), eta_at(e));
         let ggx = Ggx { alpha_x: alpha, alpha_y: alpha };
         let wo = direction(cosine_at(c, alpha), 1.0);

@@ -110,8 +110,8 @@ static ANISOTROPIC: LazyLock<Tables<4, 2>> = LazyLock::new(|| {
         let along = alpha_at(r);
         Ggx { alpha_x: along, alpha_y: along * (1.0 - 0.9 * aspect) }
     };
-    let directional = Grid::new([15, 9, 5, 5], |[c, r, aspect, cos2_phi]| {
-        let ggx = lobe(r, aspect);
+    let directional = Grid::new([15, 13, 5, 5], |[c, r, aspect, cos_phi]| {
+        let (ggx, cos2_phi) = (lobe(r, aspect), cos_phi * cos_phi);
         let cos = cosine_at(c, projected_alpha(&ggx, cos2_phi));
         Single::integrate(&ggx, direction(cos, cos2_phi))
     });
@@ -155,7 +155,7 @@ fn anisotropic_coordinates(ggx: &Ggx, w: Vec3) -> [f32; 4] {
     } else {
         (ggx.alpha_y, ggx.alpha_x, 1.0 - cos2_phi)
     };
-    [cos, roughness_coordinate(along), (1.0 - across / along) / 0.9, azimuth]
+    [cos, roughness_coordinate(along), (1.0 - across / along) / 0.9, azimuth.max(0.0).sqrt()]
 }
 
 /// Alpha as seen along an azimuth.

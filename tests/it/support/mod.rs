@@ -1,5 +1,11 @@
-//! What the tests share: scenes built in code, ways to render them, and the test for means.
+//! What the tests share: scenes built in code, ways to render them, and statistical tests.
 
+pub(crate) mod chi_square;
 pub(crate) mod reference_obj;
 pub(crate) mod scenes;
 pub(crate) mod z_test;
+
+/// How much more the thorough tier (`GLINT_FULL=1`) does than the quick one.
+pub(crate) fn effort(quick: usize, full: usize) -> usize {
+    if std::env::var_os("GLINT_FULL").is_some_and(|v| v == "1") { full } else { quick }
+}

@@ -4,6 +4,8 @@
 //! face is kept when it has three corners or more and each names a vertex above it that has three finite
 //! numbers; it has texture coordinates (normals) when every corner names one that can be used.
 
+#![expect(clippy::unwrap_used, reason = "a test may unwrap, and so may its helpers")]
+
 use glint::load::LoadedModel;
 use glint::math::DVec3;
 

@@ -21,7 +21,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("filter", "error math sampling"),
     // Stages, in the order of the data.
     ("scene", "error math sampling image"),
-    ("load", "error math sampling image os geometry scene"),
+    ("load", "error math sampling image os geometry bsdf filter scene"),
     ("accel", "error math ledger os geometry"),
     ("world", "error math sampling image geometry texture bsdf light camera filter scene accel"),
     ("plan", "error math sampling ledger scene world"),

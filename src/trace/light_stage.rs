@@ -1,0 +1,67 @@
+//! Stage "sample lights": picks a light for every vertex that can scatter its light, evaluates the BSDF
+//! towards it, and leaves a shadow ray with what it would add.
+
+use super::group::{GroupStage, Model};
+use super::path::Path;
+use super::{RayKind, Tracer, Vertex, power_heuristic};
+use crate::accel::Accelerator;
+use crate::geometry::Ray;
+use crate::math::Rgb;
+use crate::sampling::Dimension;
+
+/// What the stage reads and writes.
+pub(super) struct LightStage<'a, 't, A> {
+    pub(super) tracer: &'a Tracer<'t, A>,
+    pub(super) vertices: &'a [Vertex],
+    pub(super) slots: &'a [Path],
+    pub(super) shadow_rays: &'a mut Vec<Ray>,
+    /// Slot, and what the light adds to it if it is visible.
+    pub(super) shadow_gains: &'a mut Vec<(u32, Rgb)>,
+}
+
+impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
+    fn visit<M: Model>(&mut self, group: &[u32]) {
+        let world = self.tracer.world;
+        let lights = &world.lights;
+        for &i in group {
+            let vertex = &self.vertices[i as usize];
+            let model = M::of(&vertex.bsdf);
+            if model.is_delta() {
+                continue;
+            }
+            let path = &self.slots[vertex.slot as usize];
+            let bounce = path.bounce;
+            let select = match lights.needs_choice() {
+                true => path.sampler.one(Dimension::LightSelect { bounce }),
+                false => 0.0,
+            };
+            let position = path.sampler.two(Dimension::LightPosition { bounce });
+            let Some(light) = lights.sample(world, vertex.at.point, select, position) else {
+                continue;
+            };
+            let wi = vertex.at.frame.local_from_world(light.direction);
+            // Shading and geometric normal must agree on which side the light is, or it would leak.
+            if (wi.z > 0.0) != (vertex.at.n_geometric.dot(light.direction) > 0.0) {
+                continue;
+            }
+            let value = model.evaluate(vertex.wo, wi);
+            if value.f_cos.is_black() {
+                continue;
+            }
+            let weight = match light.is_delta {
+                true => 1.0,
+                false => power_heuristic(light.pdf_solid_angle, value.pdf_solid_angle),
+            };
+            let gain =
+                path.throughput * value.f_cos * light.radiance * (weight / light.pdf_solid_angle);
+            let origin = vertex.at.origin_towards(light.direction);
+            let mut ray = match light.end {
+                Some(end) => Ray::between(origin, end),
+                None => Ray::new(origin, light.direction),
+            };
+            ray.id = path.sampler.ray_id(bounce, RayKind::Shadow as u32);
+            self.shadow_rays.push(ray);
+            self.shadow_gains.push((vertex.slot, gain));
+        }
+    }
+}

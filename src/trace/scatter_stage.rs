@@ -1,0 +1,71 @@
+//! Stage "scatter": chooses where each path goes on.
+
+use super::group::{GroupStage, Model};
+use super::path::Path;
+use super::{RayKind, SCATTERED_SPREAD, Tracer, Vertex};
+use crate::accel::Accelerator;
+use crate::geometry::Ray;
+use crate::math::Rgb;
+use crate::sampling::Dimension;
+
+/// What the stage reads and writes.
+pub(super) struct ScatterStage<'a, 't, A> {
+    pub(super) tracer: &'a Tracer<'t, A>,
+    pub(super) vertices: &'a [Vertex],
+    pub(super) slots: &'a mut [Path],
+    /// Slots of paths that go on.
+    pub(super) active: &'a mut Vec<u32>,
+    /// Slots of paths that end here.
+    pub(super) finished: &'a mut Vec<u32>,
+}
+
+impl<A: Accelerator> GroupStage for ScatterStage<'_, '_, A> {
+    fn visit<M: Model>(&mut self, group: &[u32]) {
+        for &i in group {
+            let vertex = &self.vertices[i as usize];
+            let path = &mut self.slots[vertex.slot as usize];
+            let goes_on = scatter(path, vertex, M::of(&vertex.bsdf), self.tracer);
+            let list = if goes_on { &mut *self.active } else { &mut *self.finished };
+            list.push(vertex.slot);
+        }
+    }
+}
+
+/// Samples the model and sets the path's next ray; false where the path ends.
+#[inline]
+fn scatter<M: Model, A: Accelerator>(
+    path: &mut Path,
+    vertex: &Vertex,
+    model: &M,
+    tracer: &Tracer<'_, A>,
+) -> bool {
+    let bounce = path.bounce;
+    let lobe = path.sampler.one(Dimension::ScatterLobe { bounce });
+    let direction = path.sampler.two(Dimension::ScatterDirection { bounce });
+    let Some(sample) = model.sample(vertex.wo, lobe, direction) else {
+        return false;
+    };
+    let wi = vertex.at.frame.world_from_local(sample.wi);
+    // Shading and geometric normal must agree on which side the path goes on, or light would leak.
+    if (sample.wi.z > 0.0) != (vertex.at.n_geometric.dot(wi) > 0.0) {
+        return false;
+    }
+    path.throughput *= sample.weight;
+    if path.throughput.is_black() {
+        return false;
+    }
+    if sample.wi.z < 0.0 {
+        let inside = tracer.world.absorption(vertex.at.material);
+        path.absorption = inside.filter(|_| vertex.at.entering).unwrap_or(Rgb::BLACK);
+    }
+    if !sample.is_delta {
+        path.cone_spread += SCATTERED_SPREAD;
+    }
+    path.pdf_solid_angle = sample.pdf_solid_angle;
+    path.is_delta = sample.is_delta;
+    path.eta_scale *= sample.eta_scale;
+    path.bounce += 1;
+    path.ray = Ray::new(vertex.at.origin_towards(wi), wi);
+    path.ray.id = path.sampler.ray_id(path.bounce, RayKind::Path as u32);
+    true
+}
