@@ -1,4 +1,4 @@
-//! The automatic camera: a three-quarter view that a box just fills.
+//! The automatic camera: a three-quarter view that the scene just fills.
 
 use super::View;
 use crate::error::{Error, Result};
@@ -18,7 +18,24 @@ const MARGIN: f64 = 0.05;
 /// `up` is the scene's upward axis: +y, with the front towards +z, or +z, with the front towards -y. `aspect` is
 /// width over height, `vertical_fov` in degrees. A box that is a point is given an edge of 1. Errors when
 /// the box is empty or a number is not finite or out of range.
-pub fn frame([min, max]: [DVec3; 2], up: DVec3, aspect: f64, vertical_fov: f64) -> Result<View> {
+pub fn frame(bounds: [DVec3; 2], up: DVec3, aspect: f64, vertical_fov: f64) -> Result<View> {
+    let [min, max] = bounds;
+    let corners = (0..8).map(|i| {
+        let pick = |bit: i32| if i & bit == 0 { 0.0 } else { 1.0 };
+        min + (max - min) * DVec3::new(pick(1), pick(2), pick(4))
+    });
+    frame_points(bounds, corners, up, aspect, vertical_fov)
+}
+
+/// As [`frame`], around `points` instead of the corners of their box `[min, max]`: closer, and centred on
+/// what is really there.
+pub fn frame_points(
+    [min, max]: [DVec3; 2],
+    points: impl Iterator<Item = DVec3>,
+    up: DVec3,
+    aspect: f64,
+    vertical_fov: f64,
+) -> Result<View> {
     if !(min.is_finite() && max.is_finite() && min.cmple(max).all()) {
         return Err(Error::Scene(format!(
             "the scene reaches from {min} to {max}: there is nothing to point a camera at; \
@@ -44,25 +61,22 @@ pub fn frame([min, max]: [DVec3; 2], up: DVec3, aspect: f64, vertical_fov: f64) 
     let right = forward.cross(up).normalize();
     let upward = right.cross(forward);
 
-    // Corners relative to the middle of the box, in those axes.
+    // The points relative to the middle of the box, in those axes.
     let center = 0.5 * min + 0.5 * max;
-    let mut half = 0.5 * (max - min);
-    if half.max_element() == 0.0 {
-        half = DVec3::splat(0.5);
-    }
-    let corners = (0..8).map(|i| {
-        let sign = |bit: i32| if i & bit == 0 { -1.0 } else { 1.0 };
-        let corner = half * DVec3::new(sign(1), sign(2), sign(4));
-        DVec3::new(right.dot(corner), upward.dot(corner), forward.dot(corner))
-    });
+    let in_picture = |p: DVec3| DVec3::new(right.dot(p), upward.dot(p), forward.dot(p));
+    // A single point gets something around it to fill the picture.
+    let single = min == max;
+    let around = [-0.5, 0.5].map(|h| in_picture(DVec3::splat(h)));
+    let points = points.map(|p| in_picture(p - center));
+    let points = points.chain(around.into_iter().filter(|_| single));
 
-    // A camera at (x, y, z) sees a corner p within the margin when |p.x - x| <= k (p.z - z), and likewise
+    // A camera at (x, y, z) sees a point p within the margin when |p.x - x| <= k (p.z - z), and likewise
     // in y. So x is at least max(p.x - k p.z) + k z and at most min(p.x + k p.z) - k z: such an x exists up
     // to a largest z, the closest the camera may come, and in the middle of the two it is centred.
     let tangent = (1.0 - MARGIN) * double::tan(0.5 * vertical_fov.to_radians());
     let (mut low, mut high) = ([f64::NEG_INFINITY; 2], [f64::INFINITY; 2]);
     let slopes = [tangent * aspect, tangent];
-    for p in corners {
+    for p in points {
         for (axis, k) in slopes.into_iter().enumerate() {
             low[axis] = low[axis].max(p[axis] - k * p.z);
             high[axis] = high[axis].min(p[axis] + k * p.z);

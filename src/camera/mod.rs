@@ -13,7 +13,7 @@ mod panoramic;
 mod perspective;
 mod view;
 
-pub use framing::frame;
+pub use framing::{frame, frame_points};
 pub use view::View;
 
 use crate::error::Result;

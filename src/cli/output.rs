@@ -73,7 +73,9 @@ impl Outputs {
         let exposure = picture.settings.exposure.unwrap_or_else(|| {
             let on_surfaces = pixels.radiance.iter().zip(&pixels.alpha).filter(|(_, a)| **a > 0.5);
             let seen: Vec<Rgb> = on_surfaces.map(|(c, _)| *c).collect();
-            auto_exposure(if seen.is_empty() { pixels.radiance.clone() } else { seen })
+            let middle_grey =
+                auto_exposure(if seen.is_empty() { pixels.radiance.clone() } else { seen });
+            middle_grey + LIGHTER_THAN_GREY
         });
         for (path, format) in &self.files {
             match format {
@@ -91,6 +93,10 @@ impl Outputs {
         Ok((self.files.iter().map(|(p, _)| p.display().to_string()).collect(), exposure))
     }
 }
+
+/// Surfaces of models are lighter than middle grey (0.18) by about a stop: shown as middle grey they
+/// would look underexposed.
+const LIGHTER_THAN_GREY: f32 = 1.0;
 
 /// Everything that goes into the files.
 pub(super) struct Picture<'a> {

@@ -208,12 +208,11 @@ pub(super) fn choices(
             point(camera.up)
         ),
     );
-    let extent = world.bounds.extent();
-    // Models lie on the ground more often than they stand: flat along z hints at z up.
     if args.up.is_none() && camera.name == "automatic" && up == DVec3::Y {
-        let lies_in_xy = extent.z < 0.5 * extent.y && extent.z < 0.5 * extent.x;
-        if lies_in_xy {
-            say(args, "hint: the model is flat along z; if it lies on its back, try --up z");
+        // What a model stands on is flat: a larger base along z than along y says that z is up.
+        let base = |axis| world.geometry.resting_area(&world.bounds, axis);
+        if base(2) > 3.0 * base(1) && base(2) > 1e-3 * world.bounds.extent().length_squared() {
+            say(args, "hint: the model seems to stand along z; if it lies on its back, try --up z");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Command line over scene file over defaults: what a render will really use.
 
 use super::args::{Render, Up, numbers, rgb};
-use crate::camera::{Camera, frame};
+use crate::camera::{Camera, frame_points};
 use crate::error::{Error, Result};
 use crate::film::Region;
 use crate::filter::Filter;
@@ -145,7 +145,8 @@ pub(super) fn camera(
         let vertical_fov = args.fov.unwrap_or(DEFAULT_FOV);
         let bounds = [world.bounds.min, world.bounds.max].map(|p| p.as_dvec3());
         let aspect = f64::from(size[0]) / f64::from(size[1]);
-        let view = frame(bounds, up, aspect, vertical_fov)?;
+        let points = world.geometry.hull_points().map(|p| p.as_dvec3());
+        let view = frame_points(bounds, points, up, aspect, vertical_fov)?;
         camera = Some(scene::Camera {
             name: "automatic".into(),
             from: view.from + world.origin,

@@ -32,6 +32,14 @@ impl Aabb {
         !self.min.cmple(self.max).all()
     }
 
+    /// Its eight corners.
+    pub fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |axis: usize| if i >> axis & 1 == 0 { self.min } else { self.max };
+            Vec3::new(pick(0).x, pick(1).y, pick(2).z)
+        })
+    }
+
     /// Middle.
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5

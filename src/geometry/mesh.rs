@@ -132,31 +132,54 @@ impl Geometry {
         self.all_meshes().map(|m| m.positions.bytes() + m.triangles.bytes()).sum()
     }
 
+    /// Points whose convex hull holds everything: the vertices of own meshes, the boxes of instances.
+    pub fn hull_points(&self) -> impl Iterator<Item = Vec3> {
+        let own = self.meshes.iter().flat_map(|m| m.positions.iter().map(|p| Vec3::from_array(*p)));
+        let objects = self.object_bounds();
+        own.chain(self.instances.iter().flat_map(move |instance| {
+            let b = objects[instance.object as usize];
+            let used = if b.is_empty() { 0 } else { 8 };
+            b.corners()
+                .into_iter()
+                .take(used)
+                .map(|corner| instance.world_from_object.transform_point_f64(corner).as_vec3())
+        }))
+    }
+
+    /// Area of the triangles that lie flat on the lower side of `bounds` along `axis`: what the scene
+    /// would stand on if that axis were up. Own meshes only.
+    pub fn resting_area(&self, bounds: &Aabb, axis: usize) -> f32 {
+        let height = bounds.min[axis] + 0.01 * bounds.extent()[axis];
+        let flat = |t: &[Vec3; 3]| t.iter().all(|p| p[axis] <= height);
+        let area = |[a, b, c]: [Vec3; 3]| 0.5 * (b - a).cross(c - a).length();
+        self.meshes
+            .iter()
+            .flat_map(|m| (0..m.triangles.len() as u32).map(|i| m.vertices(i)))
+            .filter(flat)
+            .map(area)
+            .sum()
+    }
+
     /// Box around everything, in world space.
     pub fn bounds(&self) -> Aabb {
         let own = self.meshes.iter().fold(Aabb::EMPTY, |b, m| b.union(m.bounds()));
-        let objects: Vec<Aabb> = self
-            .objects
-            .iter()
-            .map(|o| o.meshes.iter().fold(Aabb::EMPTY, |b, m| b.union(m.bounds())))
-            .collect();
+        let objects = self.object_bounds();
         self.instances.iter().fold(own, |all, instance| {
             let b = objects[instance.object as usize];
             if b.is_empty() {
                 return all;
             }
-            (0..8).fold(all, |all, corner| {
-                let pick = |axis: usize, low: f32, high: f32| {
-                    if corner >> axis & 1 == 0 { low } else { high }
-                };
-                let p = Vec3::new(
-                    pick(0, b.min.x, b.max.x),
-                    pick(1, b.min.y, b.max.y),
-                    pick(2, b.min.z, b.max.z),
-                );
-                all.with_point(instance.world_from_object.transform_point_f64(p).as_vec3())
+            b.corners().into_iter().fold(all, |all, corner| {
+                let p = instance.world_from_object.transform_point_f64(corner);
+                all.with_point(p.as_vec3())
             })
         })
+    }
+
+    /// Box around each object, in its own space.
+    fn object_bounds(&self) -> Vec<Aabb> {
+        let bounds = |o: &Object| o.meshes.iter().fold(Aabb::EMPTY, |b, m| b.union(m.bounds()));
+        self.objects.iter().map(bounds).collect()
     }
 
     fn all_meshes(&self) -> impl Iterator<Item = &TriangleMesh> {
