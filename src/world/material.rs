@@ -3,7 +3,6 @@
 use super::{SurfaceInteraction, World};
 use crate::bsdf::{
     Bsdf, Conductor, Lambert, Mirror, OrenNayar, Plastic, Principled, PrincipledParameters,
-    RoughDielectric,
 };
 use crate::math::Rgb;
 use crate::scene::{
