@@ -44,13 +44,13 @@ class Mesh:
 
 
 class Obj:
-    """An OBJ file in the making."""
+    """An OBJ file in the making; coordinates have `digits` decimals."""
 
-    def __init__(self, comment, library=None):
+    def __init__(self, comment, library=None, digits=4):
         self.lines = ['# ' + comment]
         if library:
             self.lines.append('mtllib ' + library)
-        self.counts, self.material = [0, 0, 0], None
+        self.counts, self.material, self.digits = [0, 0, 0], None, digits
 
     def add(self, mesh, material=None, name=None):
         """Appends a mesh, with a material of the library from here on."""
@@ -59,7 +59,7 @@ class Obj:
         if material and material != self.material:
             self.lines.append('usemtl ' + material)
             self.material = material
-        for keyword, values, digits in (('v', mesh.points, 4), ('vt', mesh.uvs, 4), ('vn', mesh.normals, 3)):
+        for keyword, values, digits in (('v', mesh.points, self.digits), ('vt', mesh.uvs, 4), ('vn', mesh.normals, 3)):
             for value in values or ():
                 self.lines.append(keyword + ''.join(' ' + number(x, digits) for x in value))
         v, vt, vn = self.counts

@@ -41,7 +41,7 @@ def king():
 
 def make(folder):
     for piece in (pawn, bishop, rook, queen, king):
-        mesh = revolve(piece(), 40)
+        mesh = revolve(piece(), 36)
         obj = Obj(f'{piece.__name__}, turned')
         obj.add(Mesh(mesh.points, mesh.faces, mesh.normals))
         if piece is king:

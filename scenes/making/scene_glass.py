@@ -28,7 +28,7 @@ def carafe():
     lip = arc((0.147, 1.2), 0.02, -20, 200, 8)
     inside = [(0.1, 1.1), (0.09, 1.0), (0.095, 0.9), (0.12, 0.8), (0.175, 0.7), (0.255, 0.6), (0.325, 0.5)]
     inside += [(0.365, 0.4), (0.375, 0.3), (0.365, 0.2), (0.335, 0.13), (0.26, 0.09), (0.14, 0.08), (0, 0.08)]
-    return revolve(smooth(outside[:2]) + smooth(outside[1:])[1:] + lip + smooth(inside), 56)
+    return revolve(smooth(outside[:2]) + smooth(outside[1:])[1:] + lip + smooth(inside), 48)
 
 
 def smooth(profile, steps=2):
@@ -83,7 +83,7 @@ def brilliant():
 def make(folder):
     parts = {
         'backdrop': sheet(backdrop, 1, 48),
-        'trefoil': torus_knot(2, 3, 0.36, 0.16, 0.085, 192, 16).turn('x', 90),
+        'trefoil': torus_knot(2, 3, 0.36, 0.16, 0.085, 168, 14).turn('x', 90),
         'carafe': carafe(),
         'stone': brilliant(),
     }

@@ -15,7 +15,7 @@ def steps():
     profile = [(6.3, -0.6)]
     for r, y in ((6.3, 0.2), (5.6, 0.45), (5.0, 0.7), (4.4, FLOOR)):
         profile += ([(r, y - 0.25)] if r < 6.3 else []) + arc((r - 0.04, y - 0.04), 0.04, 0, 90, 4)
-    mesh = revolve(profile + [(0, FLOOR)], 96)
+    mesh = revolve(profile + [(0, FLOOR)], 80)
     # Metres along the rim as well, so that stone is of the same size everywhere.
     mesh.uvs = [(u * 24, v * 0.7) for u, v in mesh.uvs]
     return mesh
@@ -38,9 +38,9 @@ def column(height=3.4, flutes=16, along=6):
     base += [(0.24, 0.26)]
     top = [(0.19, high)] + arc((0.2, high + 0.025), 0.025, -90, 90, 4)
     top += [(0.2, high + 0.07), (0.22, high + 0.12), (0.27, high + 0.16), (0.34, high + 0.18)]
-    obj = Obj('a fluted column, its foot at the origin')
+    obj = Obj('a fluted column, its foot at the origin', digits=3)
     plinth, abacus = box((0.74, 0.06, 0.74), (0, 0.03, 0)), box((0.76, 0.12, 0.76), (0, height - 0.06, 0))
-    for part in (sheet(shaft, flutes * along, 10), revolve(base, 48), revolve(top, 48)):
+    for part in (sheet(shaft, flutes * along, 8), revolve(base, 48), revolve(top, 48)):
         obj.add(Mesh(part.points, part.faces, part.normals))
     for part in (plinth, abacus):
         obj.add(Mesh(part.points, part.faces))
@@ -51,7 +51,7 @@ def ring(y=FLOOR + 3.4):
     """The entablature: a moulded beam in a circle."""
     outer = [(3.2, y), (3.92, y), (3.92, y + 0.16), (3.96, y + 0.16), (3.96, y + 0.34), (4.0, y + 0.36)]
     outer += [(4.06, y + 0.44), (4.14, y + 0.5), (4.14, y + 0.58), (3.3, y + 0.6), (3.22, y + 0.5)]
-    return revolve(outer + [(3.2, y)], 96)
+    return revolve(outer + [(3.2, y)], 80)
 
 
 def rib(radius=3.55, height=2.5, thickness=0.035):
@@ -123,7 +123,7 @@ def cypress():
         r *= 0.68 + 0.62 * bump
         return (r * math.sin(a), 0.1 + 5.2 * v, r * math.cos(a))
 
-    return sheet(f, 36, 48)
+    return sheet(f, 30, 40)
 
 
 def islet():
@@ -143,7 +143,7 @@ def hills(near, far, height, seed):
         ridge = max(0, png.fractal(u * 14, v * 3, 14, 4, seed) - 0.3)
         return (r * math.sin(a), -0.5 + rise * (0.02 + 2.4 * ridge), r * math.cos(a))
 
-    return sheet(f, 180, 10)
+    return sheet(f, 144, 9)
 
 
 def mosaic(u, v):
@@ -201,14 +201,14 @@ def lilies():
 
 
 def make(folder):
-    knot = torus_knot(2, 3, 0.68, 0.3, 0.15, 192, 16).turn('x', 90)
+    knot = torus_knot(2, 3, 0.68, 0.3, 0.15, 168, 14).turn('x', 90)
     plain = {
         'ring': ring(), 'rib': rib(), 'pedestal': pedestal(), 'amphora': amphora(), 'pad': pad(), 'lotus': lotus(),
         'cypress': cypress(), 'islet': islet(), 'knot': knot, 'hills': hills(60, 150, 15, 5),
         'mountains': hills(170, 420, 60, 9),
     }
     for name, mesh in plain.items():
-        obj = Obj(f'{name}, for the temple on the lake')
+        obj = Obj(f'{name}, for the temple on the lake', digits=3)
         obj.add(Mesh(mesh.points, mesh.faces, mesh.normals))
         obj.write(folder / f'{name}.obj')
     column().write(folder / 'column.obj')
@@ -218,7 +218,7 @@ def make(folder):
     points = [(2.7 * math.sin(a), FLOOR + 0.006, 2.7 * math.cos(a)) for a in rim]
     textured['mosaic'] = Mesh(points, [tuple(range(n))], None, [(0.5 + 0.5 * math.sin(a), 0.5 + 0.5 * math.cos(a)) for a in rim])
     for name, mesh in textured.items():
-        obj = Obj(f'{name}, for the temple on the lake')
+        obj = Obj(f'{name}, for the temple on the lake', digits=3)
         obj.add(mesh)
         obj.write(folder / f'{name}.obj')
     png.write(folder / 'mosaic.png', 384, 384, mosaic)

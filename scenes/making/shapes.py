@@ -57,6 +57,7 @@ def revolve(profile, segments, crease=35):
     The profile runs from bottom to top of the outside (and down the inside of a vessel): its left is inside. Corners
     sharper than `crease` degrees stay sharp; radius 0 closes a pole. uv: angle, length along the profile.
     """
+    profile = [p for i, p in enumerate(profile) if i == 0 or math.dist(p, profile[i - 1]) > 1e-6]
     # Normals of the pieces, in the (radius, height) plane.
     pieces = []
     for (r0, y0), (r1, y1) in zip(profile, profile[1:]):
