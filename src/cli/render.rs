@@ -26,23 +26,30 @@ use std::time::Instant;
 pub(super) fn run(args: &Render) -> Result<u8> {
     let mut phases = Phases::default();
     let stop = stop_flag()?;
+    // Loading, the sky and the PNG use the global pool; a second call in one process may fail, harmlessly.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads).build_global();
 
     // Files to a scene; what the command line says goes over what the file says.
     let start = Instant::now();
+    let busy = report::busy(args, "loading");
     let outputs = Outputs::check(&args.output, &args.scene)?;
     let mut scene = load::load_scene(&args.scene)?;
     select::override_scene(args, &mut scene)?;
     let settings = Settings::resolve(args, &scene)?;
-    let inputs = load::fingerprint(&scene.inputs)?;
     phases.load = start.elapsed().as_secs_f64();
 
     // A scene to a world, and the camera in it.
     let start = Instant::now();
+    busy.set_message("building");
     let (cameras, up) = (std::mem::take(&mut scene.cameras), scene.up);
+    let (inputs, environment) = (std::mem::take(&mut scene.inputs), scene.environment);
     let world = World::compile(scene)?;
-    report::warnings(args, &world.warnings);
+    busy.suspend(|| report::warnings(args, &world.warnings));
     let (camera, description) = select::camera(args, &cameras, up, &world, settings.size)?;
-    report::choices(args, &settings, &description, &world, up);
+    let overrides = (args.background, &args.override_material, environment, up);
+    let fingerprint =
+        load::fingerprint(&inputs, &format!("{settings:?} {description:?} {overrides:?}"))?;
+    busy.suspend(|| report::choices(args, &settings, &description, &world, up));
 
     // A world to an accelerator: the only place where a backend is chosen.
     match backend(args.accel)? {
@@ -50,9 +57,16 @@ pub(super) fn run(args: &Render) -> Result<u8> {
         Chosen::Embree => {
             let embree = EmbreeAccelerator::build(world.geometry.clone(), args.threads)?;
             phases.build = start.elapsed().as_secs_f64();
+            busy.finish_and_clear();
             let name = ("embree", embree.version());
-            let job =
-                Job { args, settings: &settings, outputs: &outputs, stop: &stop, name, inputs };
+            let job = Job {
+                args,
+                settings: &settings,
+                outputs: &outputs,
+                stop: &stop,
+                name,
+                fingerprint,
+            };
             finish(&job, &world, &embree, &camera, phases)
         }
     }
@@ -88,7 +102,7 @@ pub(super) struct Job<'a> {
     pub(super) outputs: &'a Outputs,
     pub(super) stop: &'a Arc<AtomicBool>,
     pub(super) name: (&'static str, String),
-    pub(super) inputs: String,
+    pub(super) fingerprint: String,
 }
 
 /// A world and an accelerator to files and a summary.
