@@ -11,6 +11,7 @@ HEAD = """# Tens of thousands of placements from nested models: flower, patch, b
 
 [film]
 size = [1280, 720]
+exposure = 2.8
 
 [camera.field]
 from = [0.9, 1.75, 4.2]

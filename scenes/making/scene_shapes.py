@@ -1,4 +1,4 @@
-"""Shapes that several scenes place: the unit sphere, the unit square, a disc."""
+"""Shapes that several scenes place: spheres, the unit square, a disc."""
 
 from .mesh import Mesh, Obj
 from .shapes import revolve, sphere
@@ -7,6 +7,7 @@ from .shapes import revolve, sphere
 def make(folder):
     parts = {
         'sphere': ('the unit sphere', sphere(64, 32)),
+        'bulb': ('a sphere of few triangles, for lamps', sphere(12, 6)),
         'square': ('the square from (-1, 0, -1) to (1, 0, 1), facing up', square()),
         'disc': ('the unit disc, facing up', revolve([(1, 0), (0, 0)], 48)),
     }

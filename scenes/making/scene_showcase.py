@@ -90,7 +90,7 @@ def pad():
         r = v * (1 + 0.02 * math.sin(5 * a))
         return (r * math.sin(a), 0.012 + rise, r * math.cos(a))
 
-    return sheet(lambda u, v: f(u, 1e-3 + v * 0.999), 32, 4)
+    return sheet(lambda u, v: f(u, 0.04 + v * 0.96), 32, 4)
 
 
 def lotus():
@@ -133,7 +133,7 @@ def islet():
         height = 0.75 * (1 - r * r) ** 1.3 - 0.12 + 0.12 * png.fractal(4 + 3 * r * math.cos(a), 4 + 3 * r * math.sin(a), 16, 3)
         return (5 * lobe * r * math.sin(a), height, 3.4 * lobe * r * math.cos(a))
 
-    return sheet(lambda u, v: f(u, v * 0.999), 48, 12)
+    return sheet(lambda u, v: f(u, v * 0.96), 48, 12)
 
 
 def hills(near, far, height, seed):

@@ -118,7 +118,7 @@ fn values_arrive_as_written() {
 }
 
 /// `data/every_key.toml`: the scene with one of its environments, and what replaces its lines.
-fn every_key() -> Vec<String> {
+pub(crate) fn every_key() -> Vec<String> {
     let mut parts = include_str!("data/every_key.toml").split("#> part\n");
     let common = parts.next().unwrap();
     parts.map(|environment| format!("{common}{environment}")).collect()

@@ -1,8 +1,10 @@
 //! What wrong scene files get: an error with the right line, the line itself, and advice.
 
-use crate::scene_file::Folder;
+use crate::scene_file::{Folder, every_key};
 use glint::error::Error;
 use glint::load::load_scene;
+use glint::sampling::CounterRng;
+use rand::RngExt;
 use std::fs;
 
 /// The scene file `text` must fail at `line`, with each of `fragments` in the message.
@@ -249,4 +251,47 @@ fn files_that_cannot_be_read() {
     fs::write(&path, b"[film]\n# M\xfcller").unwrap();
     let error = load_scene(&path).unwrap_err().to_string();
     assert!(error.contains("latin1.toml:2: not UTF-8"), "{error}");
+}
+
+#[test]
+fn marks_and_line_ends_of_other_systems() {
+    let scene = Folder::new().load("\u{feff}[film]\r\nsize = [3, 2]\r\n").unwrap();
+    assert_eq!(scene.settings.size, Some([3, 2]));
+    rejects("[film]\r\nsize = [3, 0]\r\n", 2, &["a whole number"]);
+}
+
+/// Whatever is damaged: a scene, or an error with a line of the file.
+#[test]
+fn damaged_files_never_panic() {
+    let folder = Folder::new();
+    let original = every_key().remove(0);
+    let mut loaded = 0;
+    for seed in 0..1000 {
+        let mut rng = CounterRng::new(seed);
+        let mut text: Vec<char> = original.chars().collect();
+        for _ in 0..rng.random_range(1..4) {
+            let at = rng.random_range(0..text.len());
+            match rng.random_range(0..4) {
+                0 => drop(text.remove(at)),
+                1 => text.insert(at, char::from(rng.random_range(32..127_u8))),
+                2 => {
+                    text[at] =
+                        ['0', '-', '[', ']', '{', '"', '\n', '9', 'e', '.'][seed as usize % 10]
+                }
+                _ => {
+                    // A piece of the file once more, somewhere else.
+                    let piece: Vec<char> = text.iter().skip(at).take(40).copied().collect();
+                    let to = rng.random_range(0..text.len());
+                    text.splice(to..to, piece);
+                }
+            }
+        }
+        let text: String = text.into_iter().collect();
+        match folder.load(&text) {
+            Ok(_) => loaded += 1,
+            Err(error) => assert!(error.to_string().contains("scene.toml:"), "{error}\n{text}"),
+        }
+    }
+    // Both outcomes are well covered: most of the file is comments.
+    assert!((100..900).contains(&loaded), "{loaded} of 1000 loaded");
 }

@@ -51,7 +51,8 @@ impl<'a> Source<'a> {
         name: &str,
         known: impl IntoIterator<Item = &'n str>,
     ) -> Error {
-        self.error(span, unknown(what, name, known))
+        let known: Vec<&str> = known.into_iter().collect();
+        self.error(span, format!("unknown {what} `{name}`{}", advice(name, &known, "Known")))
     }
 
     /// The path that `file` means: relative to the folder of the scene file.
@@ -77,30 +78,15 @@ impl<'a> Source<'a> {
     }
 }
 
-/// What is wrong with a `name` that is not among `known`; `what` is its kind.
-pub(super) fn unknown<'n>(
-    what: &str,
-    name: &str,
-    known: impl IntoIterator<Item = &'n str>,
-) -> String {
-    let known: Vec<&str> = known.into_iter().collect();
-    format!("unknown {what} `{name}`{}", advice(name, &known, "Known"))
-}
-
 /// The one of `kinds` that is given, or in words why it is not one.
 pub(super) fn exactly_one<T, const N: usize>(kinds: [(&str, Option<T>); N]) -> Result<T, String> {
-    let all = kinds.each_ref().map(|kind| kind.0);
-    let mut given: Vec<(&str, T)> =
-        kinds.into_iter().filter_map(|(name, kind)| Some((name, kind?))).collect();
-    match (given.pop(), given.is_empty()) {
-        (Some((_, kind)), true) => Ok(kind),
-        (None, _) => Err(format!("needs one of {}", quoted(&all))),
-        (Some((last, _)), false) => {
-            let mut names: Vec<&str> = given.iter().map(|kind| kind.0).collect();
-            names.push(last);
-            Err(format!("has {} at once: keep one of them", quoted(&names)))
-        }
+    let names = kinds.each_ref().map(|kind| kind.0);
+    let given = kinds.into_iter().filter_map(|(name, kind)| Some((name, kind?)));
+    let (given_names, mut given): (Vec<&str>, Vec<T>) = given.unzip();
+    if given.len() > 1 {
+        return Err(format!("has {} at once: keep one of them", quoted(&given_names)));
     }
+    given.pop().ok_or_else(|| format!("needs one of {}", quoted(&names)))
 }
 
 /// serde's "unknown field `a`, expected one of `b`, `c`", with a suggestion.
