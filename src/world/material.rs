@@ -133,9 +133,9 @@ pub(super) fn wrap_of(texture: &TextureReference) -> Wrap {
 /// An alpha cut-out by an image without alpha cuts nothing out: such a texture is dropped here, so
 /// that its triangles need no filter.
 pub(super) fn drop_alpha_of_opaque_images(material: &mut Material, textures: &[MipMap]) {
-    if let Some((texture, Channel::Alpha)) = material.opacity.texture {
-        if !textures[texture.image.index()].image().has_alpha() {
-            material.opacity.texture = None;
-        }
+    if let Some((texture, Channel::Alpha)) = material.opacity.texture
+        && !textures[texture.image.index()].image().has_alpha()
+    {
+        material.opacity.texture = None;
     }
 }
