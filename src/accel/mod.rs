@@ -6,6 +6,8 @@
 //! a batch of one. A ray's answer never depends on what else is in its batch.
 
 mod brute;
+#[cfg(feature = "bvh")]
+pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
 

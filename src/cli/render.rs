@@ -6,6 +6,8 @@ use super::report::{self, Phases, Statistics};
 use super::select::{self, Settings};
 use super::{DONE, NOT_MET};
 use crate::accel::Accelerator;
+#[cfg(feature = "bvh")]
+use crate::accel::bvh::Bvh;
 #[cfg(feature = "embree")]
 use crate::accel::embree::EmbreeAccelerator;
 use crate::camera::Camera;
@@ -52,22 +54,33 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     busy.suspend(|| report::choices(args, &settings, &description, &world, up));
 
     // A world to an accelerator: the only place where a backend is chosen.
+    let (geometry, threads) = (world.geometry.clone(), args.threads);
+    let mut job = Job {
+        args,
+        settings: &settings,
+        outputs: &outputs,
+        stop: &stop,
+        name: ("", String::new()),
+        fingerprint,
+    };
+    let built = |phases: &mut Phases| {
+        phases.build = start.elapsed().as_secs_f64();
+        busy.finish_and_clear();
+    };
     match backend(args.accel)? {
         #[cfg(feature = "embree")]
         Chosen::Embree => {
-            let embree = EmbreeAccelerator::build(world.geometry.clone(), args.threads)?;
-            phases.build = start.elapsed().as_secs_f64();
-            busy.finish_and_clear();
-            let name = ("embree", embree.version());
-            let job = Job {
-                args,
-                settings: &settings,
-                outputs: &outputs,
-                stop: &stop,
-                name,
-                fingerprint,
-            };
+            let embree = EmbreeAccelerator::build(geometry, threads)?;
+            built(&mut phases);
+            job.name = ("embree", embree.version());
             finish(&job, &world, &embree, &camera, phases)
+        }
+        #[cfg(feature = "bvh")]
+        Chosen::Bvh => {
+            let bvh = Bvh::build(geometry, threads)?;
+            built(&mut phases);
+            job.name = ("bvh", env!("CARGO_PKG_VERSION").to_owned());
+            finish(&job, &world, &bvh, &camera, phases)
         }
     }
 }
@@ -76,6 +89,8 @@ pub(super) fn run(args: &Render) -> Result<u8> {
 enum Chosen {
     #[cfg(feature = "embree")]
     Embree,
+    #[cfg(feature = "bvh")]
+    Bvh,
 }
 
 fn backend(wanted: Backend) -> Result<Chosen> {
@@ -85,14 +100,12 @@ fn backend(wanted: Backend) -> Result<Chosen> {
         #[cfg(not(feature = "embree"))]
         Backend::Embree => Err(Error::Usage("--accel embree: built without Embree".into())),
         #[cfg(not(feature = "embree"))]
-        Backend::Auto => bvh_is_missing(),
-        Backend::Bvh => bvh_is_missing(),
+        Backend::Auto => Ok(Chosen::Bvh),
+        #[cfg(feature = "bvh")]
+        Backend::Bvh => Ok(Chosen::Bvh),
+        #[cfg(not(feature = "bvh"))]
+        Backend::Bvh => Err(Error::Usage("--accel bvh: built without the in-house BVH".into())),
     }
-}
-
-fn bvh_is_missing() -> Result<Chosen> {
-    let message = "this version has no in-house BVH yet: build with feature `embree`".into();
-    Err(Error::Backend { backend: "bvh", message })
 }
 
 /// What does not depend on the backend's type.
