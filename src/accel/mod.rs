@@ -6,13 +6,16 @@
 //! a batch of one. A ray's answer never depends on what else is in its batch.
 
 mod brute;
+#[cfg(feature = "bvh")]
+pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
 
 pub use brute::BruteForce;
 
-use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, intersect_triangle, offset_distance};
-use crate::math::DVec3;
+use crate::geometry::{
+    Geometry, Hit, PrimitiveId, Ray, TriangleHit, intersect_triangle, offset_distance,
+};
 
 /// Answers batches of rays.
 pub trait Accelerator: Sync {
@@ -58,16 +61,7 @@ pub struct BuildStats {
 #[inline]
 pub fn resolve(geometry: &Geometry, ray: &Ray, id: PrimitiveId) -> Hit {
     let (vertices, instance_magnitude) = geometry.world_vertices(id);
-    let (t, u, v) = match intersect_triangle(ray, &vertices) {
-        Some(hit) => (hit.t, hit.u, hit.v),
-        // Seen edge-on: the backend's rounding found what has no extent; take the first vertex.
-        None => {
-            let direction = ray.direction.as_dvec3();
-            let along = (vertices[0] - ray.origin.as_dvec3()).dot(direction);
-            (((along / direction.length_squared()) as f32).max(ray.t_min), 0.0, 0.0)
-        }
-    };
-    let [a, b, c]: [DVec3; 3] = vertices;
-    let point = (a + (b - a) * f64::from(u) + (c - a) * f64::from(v)).as_vec3();
-    Hit { t, u, v, offset: offset_distance(point, &vertices, instance_magnitude), id }
+    let TriangleHit { t, u, v, point, normal } = intersect_triangle(ray, &vertices);
+    let offset = offset_distance(point, &vertices, instance_magnitude);
+    Hit { t, u, v, offset, point, normal, id }
 }

@@ -8,7 +8,7 @@ use super::energy::{self, Single};
 use super::microfacet::{self, Ggx};
 use super::{BsdfSample, BsdfValue, LobeKind, Scatter, fresnel};
 use crate::math::{Rgb, Vec3};
-use std::f32::consts::FRAC_1_PI;
+use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Metal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,24 +52,33 @@ pub(super) fn loss_scale(mean_loss: f32) -> f32 {
     if mean_loss > 1e-6 { FRAC_1_PI / mean_loss } else { 0.0 }
 }
 
+impl Conductor {
+    /// Value and density for a rough metal, given what single scattering loses from `wo`: multiple scattering
+    /// is chosen with that probability.
+    #[inline]
+    fn rough(&self, ggx: &Ggx, loss_o: f32, wo: Vec3, wi: Vec3) -> BsdfValue {
+        let Some(h) = microfacet::reflection_half(wo, wi).filter(|_| wi.z > 0.0) else {
+            return BsdfValue::ZERO;
+        };
+        let reflectance = fresnel::conductor(wo.dot(h), self.eta, self.k);
+        let mut value = ggx.reflection(wo, wi, h).scaled(reflectance, 1.0 - loss_o);
+        let loss_i = 1.0 - Single::new(Some(ggx), wi).white;
+        value += BsdfValue {
+            f_cos: self.multiple * (loss_o * loss_i * wi.z),
+            pdf_solid_angle: loss_o * energy::spread_pdf(wi.z, energy::loss_grazing(ggx)),
+        };
+        value
+    }
+}
+
 impl Scatter for Conductor {
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
-        let Some(ggx) = self.ggx.filter(|_| wo.z > 0.0 && wi.z > 0.0) else {
-            return BsdfValue::ZERO;
-        };
-        let Some(h) = microfacet::reflection_half(wo, wi) else {
-            return BsdfValue::ZERO;
-        };
-        let lobe = ggx.reflection(wo, wi, h);
-        let loss_o = 1.0 - Single::new(Some(&ggx), wo).white;
-        let loss_i = 1.0 - Single::new(Some(&ggx), wi).white;
-        BsdfValue {
-            f_cos: fresnel::conductor(wo.dot(h), self.eta, self.k) * lobe.f_cos
-                + self.multiple * (loss_o * loss_i * wi.z),
-            // Multiple scattering is chosen with the probability of what a white surface would lose.
-            pdf_solid_angle: (1.0 - loss_o) * lobe.pdf_solid_angle
-                + loss_o * energy::spread_pdf(wi.z, energy::loss_grazing(&ggx)),
+        match &self.ggx {
+            Some(ggx) if wo.z > 0.0 => {
+                self.rough(ggx, 1.0 - Single::new(Some(ggx), wo).white, wo, wi)
+            }
+            _ => BsdfValue::ZERO,
         }
     }
 
@@ -81,17 +90,21 @@ impl Scatter for Conductor {
         let Some(ggx) = &self.ggx else {
             return BsdfSample::mirrored(wo, fresnel::conductor(wo.z, self.eta, self.k));
         };
-        let wi = if lobe < 1.0 - Single::new(Some(ggx), wo).white {
+        let loss = 1.0 - Single::new(Some(ggx), wo).white;
+        let wi = if lobe < loss {
             energy::sample_spread(direction, energy::loss_grazing(ggx))
         } else {
             fresnel::reflect(wo, ggx.sample_visible(wo, direction))
         };
-        BsdfSample::spread(self, wo, wi, LobeKind::Glossy)
+        BsdfSample::spread(wi, self.rough(ggx, loss, wo, wi), LobeKind::Glossy)
     }
 
     #[inline]
     fn albedo(&self, wo: Vec3) -> Rgb {
-        fresnel::conductor(wo.z, self.eta, self.k)
+        let single = Single::new(self.ggx.as_ref(), wo);
+        let [white, _] = energy::single_mean(self.ggx.as_ref());
+        let multiple = self.multiple * (PI * (1.0 - white) * (1.0 - single.white));
+        fresnel::conductor(single.cos_fresnel, self.eta, self.k) * single.white + multiple
     }
 
     #[inline]

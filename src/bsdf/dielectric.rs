@@ -1,7 +1,7 @@
 //! Smooth glass and liquids: Fresnel reflection and refraction; and thin sheets of them.
 //!
 //! Source: [`super::fresnel`]; for the sheet, the geometric series of the inner reflections (pbrt 4th ed.,
-//! section 9.5.2). Absorption inside is the integrator's.
+//! section 9.5). Absorption inside is the integrator's.
 
 use super::{BsdfSample, BsdfValue, LobeKind, Scatter, fresnel};
 use crate::math::{Rgb, Vec3};
@@ -27,7 +27,7 @@ impl Dielectric {
         thin: bool,
     ) -> Self {
         let eta = relative_eta(eta_inside_over_outside, entering, thin);
-        Self { eta, transmittance, thin }
+        Self { eta, transmittance: super::reflectance(transmittance), thin }
     }
 
     /// Reflectance from `wo`, and the cosine of the refracted direction.
@@ -53,7 +53,11 @@ pub(super) fn sheet_reflectance(face: f32) -> f32 {
 /// Probability of reflecting: its share of the energy, the transmitted part being tinted.
 #[inline]
 pub(super) fn reflection_probability(reflectance: f32, transmittance: Rgb) -> f32 {
-    reflectance / (reflectance + (1.0 - reflectance) * transmittance.max_channel())
+    if reflectance > 0.0 {
+        reflectance / (reflectance + (1.0 - reflectance) * transmittance.max_channel())
+    } else {
+        0.0
+    }
 }
 
 impl Scatter for Dielectric {

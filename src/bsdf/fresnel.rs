@@ -1,6 +1,6 @@
 //! Fresnel reflectance of smooth interfaces, for unpolarised light, and the vectors that go with it.
 //!
-//! Source: M. Born and E. Wolf, "Principles of Optics", 7th ed., sections 1.5.2 (dielectrics) and 14.4
+//! Source: M. Born and E. Wolf, "Principles of Optics", 7th ed., sections 1.5.2 (dielectrics) and 14.2
 //! (conductors); C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", EGSR 1994, for
 //! the approximation. Knows no roughness.
 
@@ -30,9 +30,15 @@ pub(super) fn dielectric(cos_i: f32, eta: f32) -> (f32, f32) {
         return (1.0, 0.0);
     }
     let cos_t = cos2_t.sqrt();
+    (dielectric_between(cos_i, cos_t, eta), cos_t)
+}
+
+/// Reflectance of a dielectric where both cosines are known, which keeps its digits near total reflection.
+#[inline]
+pub(super) fn dielectric_between(cos_i: f32, cos_t: f32, eta: f32) -> f32 {
     let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    (0.5 * (parallel * parallel + perpendicular * perpendicular), cos_t)
+    0.5 * (parallel * parallel + perpendicular * perpendicular)
 }
 
 /// Reflectance of a metal with the complex index `eta + i k` (one channel), seen from air.
@@ -46,7 +52,7 @@ fn conductor_channel(cos_i: f32, eta: f32, k: f32) -> f32 {
     let a = (0.5 * (modulus + difference)).max(0.0).sqrt();
     let perpendicular = (modulus + cos2 - 2.0 * a * cos_i) / (modulus + cos2 + 2.0 * a * cos_i);
     let (even, odd) = (modulus * cos2 + sin2 * sin2, 2.0 * a * cos_i * sin2);
-    // At grazing incidence of a medium without a normal component (modulus = 0) the ratio is 0/0: all is reflected.
+    // Without a normal component (modulus = 0) at grazing incidence the ratio is 0/0: all is reflected.
     let sum = even + odd;
     let parallel = if sum > 0.0 { perpendicular * (even - odd) / sum } else { perpendicular };
     (0.5 * (perpendicular + parallel)).clamp(0.0, 1.0)

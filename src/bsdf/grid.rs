@@ -20,44 +20,52 @@ impl<const D: usize, const N: usize> Grid<D, N> {
                 }))
             })
             .collect();
+        Self::from_values(nodes, values)
+    }
+
+    /// From the values themselves, the first coordinate varying fastest.
+    pub(super) fn from_values(nodes: [usize; D], values: Vec<[f32; N]>) -> Self {
+        debug_assert_eq!(values.len(), nodes.iter().product::<usize>());
         Self { nodes, values }
     }
 
     /// The interpolated values at `x`; coordinates outside [0, 1] are clamped.
     #[inline]
     pub(super) fn get(&self, x: [f32; D]) -> [f32; N] {
-        // The cell, and the position in it.
-        let (mut base, mut stride) = (0, 1);
-        let mut strides = [0; D];
+        // The cell's corners: corner bit d is the upper end of coordinate d.
+        let mut offsets = [0; CORNERS];
         let mut fractions = [0.0; D];
+        let mut stride = 1;
         for d in 0..D {
             let cells = self.nodes[d] - 1;
             let position = x[d].clamp(0.0, 1.0) * cells as f32;
             let cell = (position as usize).min(cells - 1);
             fractions[d] = position - cell as f32;
-            strides[d] = stride;
-            base += cell * stride;
+            for corner in 0..1 << d {
+                offsets[corner] += cell * stride;
+                offsets[corner + (1 << d)] = offsets[corner] + stride;
+            }
             stride *= self.nodes[d];
         }
-        // The weighted sum over its 2^D corners.
-        let mut sum = [0.0; N];
-        for corner in 0..1_usize << D {
-            let (mut index, mut weight) = (base, 1.0);
-            for d in 0..D {
-                if corner >> d & 1 == 1 {
-                    index += strides[d];
-                    weight *= fractions[d];
-                } else {
-                    weight *= 1.0 - fractions[d];
+        let mut corners = [[0.0; N]; CORNERS];
+        for corner in 0..1 << D {
+            corners[corner] = self.values[offsets[corner]];
+        }
+        // Interpolate one coordinate after the other.
+        for d in (0..D).rev() {
+            for corner in 0..1 << d {
+                let (low, high) = (corners[corner], corners[corner + (1 << d)]);
+                for n in 0..N {
+                    corners[corner][n] = low[n] + fractions[d] * (high[n] - low[n]);
                 }
             }
-            for (sum, value) in sum.iter_mut().zip(self.values[index]) {
-                *sum += weight * value;
-            }
         }
-        sum
+        corners[0]
     }
 }
+
+/// Corners of a cell of the largest dimension in use, 4.
+const CORNERS: usize = 16;
 
 #[cfg(test)]
 mod tests {

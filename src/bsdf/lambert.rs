@@ -1,6 +1,6 @@
 //! Ideal diffuse reflection: f = albedo / pi (Lambert 1760).
 
-use super::{BsdfSample, BsdfValue, LobeKind, Scatter};
+use super::{BsdfSample, BsdfValue, LobeKind, Scatter, reflectance};
 use crate::math::{Rgb, Vec3};
 use crate::sampling::warp;
 
@@ -11,10 +11,10 @@ pub struct Lambert {
 }
 
 impl Lambert {
-    /// `albedo` in [0, 1].
+    /// `albedo` in [0, 1] (clamped, as all reflectances here).
     #[inline]
     pub fn new(albedo: Rgb) -> Self {
-        Self { albedo }
+        Self { albedo: reflectance(albedo) }
     }
 }
 

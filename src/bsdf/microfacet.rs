@@ -8,7 +8,8 @@
 //! Products such as G1 / cos_o are cancelled by hand, so nothing is divided by a cosine and grazing
 //! directions cost no accuracy.
 
-use crate::math::{Vec3, fun};
+use super::BsdfValue;
+use crate::math::{Rgb, Vec3, fun};
 use std::f32::consts::FRAC_1_PI;
 
 /// Surfaces smoother than this alpha (perceptual roughness 0.032) are treated as perfectly smooth, here and
@@ -31,11 +32,22 @@ pub(super) struct Lobe {
     pub(super) pdf_solid_angle: f32,
 }
 
+impl Lobe {
+    /// With the factor that the interface puts on it, when the lobe is chosen with `probability`.
+    #[inline]
+    pub(super) fn scaled(&self, factor: Rgb, probability: f32) -> BsdfValue {
+        BsdfValue {
+            f_cos: factor * self.f_cos,
+            pdf_solid_angle: probability * self.pdf_solid_angle,
+        }
+    }
+}
+
 impl Ggx {
-    /// `roughness` is perceptual, in [0, 1]: alpha = roughness^2. Anisotropy in [-1, 1] keeps that alpha
-    /// along the highlight (x when positive, y when negative) and divides it by up to 10 across: Burley's
-    /// aspect ("Physically-Based Shading at Disney", 2012, section 5.4 has the same ratio), normalised so
-    /// that alpha stays below 1. `None`: the surface is smooth ([`SMOOTH_ALPHA`]).
+    /// `roughness` is perceptual, in [0, 1]: alpha = roughness^2. Anisotropy in [-1, 1] keeps that alpha along
+    /// the highlight (x when positive, y when negative) and divides it by up to 10 across: the aspect of
+    /// Burley ("Physically-Based Shading at Disney", 2012), normalised so that alpha stays below 1. `None`:
+    /// the surface is smooth ([`SMOOTH_ALPHA`]).
     #[inline]
     pub(super) fn new(roughness: f32, anisotropy: f32) -> Option<Self> {
         let along = roughness.min(1.0) * roughness.min(1.0);

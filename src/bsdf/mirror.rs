@@ -13,7 +13,7 @@ impl Mirror {
     /// `reflectance` in [0, 1], the same at every angle.
     #[inline]
     pub fn new(reflectance: Rgb) -> Self {
-        Self { reflectance }
+        Self { reflectance: super::reflectance(reflectance) }
     }
 }
 

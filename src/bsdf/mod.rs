@@ -25,6 +25,7 @@ mod plastic;
 mod principled;
 
 use crate::math::{Rgb, Vec3};
+use std::ops::AddAssign;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
@@ -65,6 +66,15 @@ pub struct BsdfValue {
 impl BsdfValue {
     /// No scattering.
     pub const ZERO: Self = Self { f_cos: Rgb::BLACK, pdf_solid_angle: 0.0 };
+}
+
+impl AddAssign for BsdfValue {
+    /// Adds a lobe: both are sums over lobes.
+    #[inline]
+    fn add_assign(&mut self, lobe: Self) {
+        self.f_cos += lobe.f_cos;
+        self.pdf_solid_angle += lobe.pdf_solid_angle;
+    }
 }
 
 /// A sampled direction.
@@ -113,10 +123,10 @@ impl BsdfSample {
         })
     }
 
-    /// The direction `wi`, however drawn, with value and density over all lobes of `bsdf`.
+    /// The direction `wi`, however drawn, with its value and its density over all lobes.
     #[inline]
-    fn spread(bsdf: &impl Scatter, wo: Vec3, wi: Vec3, kind: LobeKind) -> Option<Self> {
-        let BsdfValue { f_cos, pdf_solid_angle } = bsdf.evaluate(wo, wi);
+    fn spread(wi: Vec3, value: BsdfValue, kind: LobeKind) -> Option<Self> {
+        let BsdfValue { f_cos, pdf_solid_angle } = value;
         (pdf_solid_angle > 0.0).then(|| Self {
             wi,
             weight: f_cos / pdf_solid_angle,
@@ -126,6 +136,18 @@ impl BsdfSample {
             eta_scale: 1.0,
         })
     }
+}
+
+/// A reflectance clamped to [0, 1] (NaN to 0): no surface returns more than it gets, whatever a file says.
+#[inline]
+fn reflectance(color: Rgb) -> Rgb {
+    color.map(unit)
+}
+
+/// A weight clamped to [0, 1] (NaN to 0).
+#[inline]
+fn unit(weight: f32) -> f32 {
+    if weight > 0.0 { weight.min(1.0) } else { 0.0 }
 }
 
 /// The closed set of models.

@@ -5,7 +5,7 @@
 //! the multiple scattering of J. Portsmouth, P. Kutz and S. Hill ("EON: A Practical Energy-Preserving Rough
 //! Diffuse BRDF", JCGT 14(1), 2025): the loss comes back as a separable lobe, all in closed form.
 
-use super::{BsdfSample, BsdfValue, LobeKind, Scatter};
+use super::{BsdfSample, BsdfValue, LobeKind, Scatter, reflectance};
 use crate::math::{Rgb, Vec3, fun};
 use crate::sampling::warp;
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2};
@@ -17,7 +17,7 @@ pub struct OrenNayar {
     /// Weight of the constant term and, relative to it, of the angular one (Fujii's A pi and B / A).
     constant: f32,
     angular: f32,
-    /// Reflectance of the multiply scattered lobe (EON, eq. 17), over the mean loss.
+    /// Reflectance of the multiply scattered lobe, over the mean loss.
     multiple: Rgb,
 }
 
@@ -26,10 +26,11 @@ impl OrenNayar {
     /// enters by the ratio of the two terms of Oren and Nayar's qualitative model.
     #[inline]
     pub fn new(albedo: Rgb, sigma: f32) -> Self {
+        let albedo = reflectance(albedo);
         let sigma2 = sigma * sigma;
         let angular = (0.45 * sigma2 / (sigma2 + 0.09)) / (1.0 - 0.5 * sigma2 / (sigma2 + 0.33));
         let constant = 1.0 / (1.0 + (FRAC_PI_2 - 2.0 / 3.0) * angular);
-        // Hemispherical mean of the single-scattering albedo (EON, eq. 15), and what it leaves.
+        // Hemispherical mean of the single-scattering albedo, and what it leaves.
         let mean = constant * (1.0 + angular * (2.0 / 3.0 - 28.0 / 15.0 * FRAC_1_PI));
         let loss = 1.0 - mean;
         let multiple = if loss > 0.0 {
@@ -40,7 +41,7 @@ impl OrenNayar {
         Self { albedo, constant, angular, multiple }
     }
 
-    /// Single-scattering albedo of a white surface (EON, eq. 14).
+    /// Single-scattering albedo of a white surface.
     #[inline]
     fn single(&self, cos: f32) -> f32 {
         let cos = cos.min(1.0);
@@ -73,7 +74,8 @@ impl Scatter for OrenNayar {
 
     #[inline]
     fn sample(&self, wo: Vec3, _lobe: f32, direction: [f32; 2]) -> Option<BsdfSample> {
-        BsdfSample::spread(self, wo, warp::cosine_hemisphere(direction), LobeKind::Diffuse)
+        let wi = warp::cosine_hemisphere(direction);
+        BsdfSample::spread(wi, self.evaluate(wo, wi), LobeKind::Diffuse)
     }
 
     #[inline]

@@ -10,7 +10,7 @@
 
 use super::conductor::loss_scale;
 use super::microfacet::{self, Ggx};
-use super::{BsdfSample, BsdfValue, LobeKind, Scatter, energy, fresnel};
+use super::{BsdfSample, BsdfValue, LobeKind, Scatter, energy, fresnel, reflectance};
 use crate::math::{Rgb, Vec3};
 use crate::sampling::warp;
 
@@ -36,7 +36,7 @@ impl Plastic {
         let transmitted = 1.0 - energy::coat_mean(ggx.as_ref(), eta);
         let escape = (transmitted / (eta * eta)).clamp(0.0, 1.0);
         Self {
-            base: albedo.map(|rho| rho * escape / (1.0 - rho * (1.0 - escape))),
+            base: reflectance(albedo).map(|rho| rho * escape / (1.0 - rho * (1.0 - escape))),
             base_scale: loss_scale(transmitted),
             eta,
             ggx,
@@ -46,36 +46,39 @@ impl Plastic {
     /// R, the albedo of the coat.
     #[inline]
     fn coat(&self, w: Vec3) -> f32 {
-        energy::coat_albedo(self.ggx.as_ref(), w, self.eta)
+        energy::reflection_albedo(self.ggx.as_ref(), w, self.eta)
     }
 
-    /// Probability of the coat's lobe: its share of the energy.
+    /// Probability of the coat's lobe, given R(wo): its share of the energy.
     #[inline]
     fn coat_probability(&self, coat: f32) -> f32 {
         let base = (1.0 - coat) * self.base.max_channel();
         if coat + base > 0.0 { coat / (coat + base) } else { 0.0 }
     }
-}
 
-impl Scatter for Plastic {
+    /// Value and density, given R(wo).
     #[inline]
-    fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
-        if wo.z <= 0.0 || wi.z <= 0.0 {
+    fn value(&self, coat: f32, wo: Vec3, wi: Vec3) -> BsdfValue {
+        if wi.z <= 0.0 {
             return BsdfValue::ZERO;
         }
-        let coat = self.coat(wo);
         let probability = self.coat_probability(coat);
         let mut value = BsdfValue {
             f_cos: self.base * (self.base_scale * (1.0 - coat) * (1.0 - self.coat(wi)) * wi.z),
             pdf_solid_angle: (1.0 - probability) * warp::cosine_hemisphere_pdf(wi.z),
         };
         if let (Some(ggx), Some(h)) = (&self.ggx, microfacet::reflection_half(wo, wi)) {
-            let lobe = ggx.reflection(wo, wi, h);
             let (reflectance, _) = fresnel::dielectric(wo.dot(h), self.eta);
-            value.f_cos += Rgb::splat(reflectance * lobe.f_cos);
-            value.pdf_solid_angle += probability * lobe.pdf_solid_angle;
+            value += ggx.reflection(wo, wi, h).scaled(Rgb::splat(reflectance), probability);
         }
         value
+    }
+}
+
+impl Scatter for Plastic {
+    #[inline]
+    fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        if wo.z > 0.0 { self.value(self.coat(wo), wo, wi) } else { BsdfValue::ZERO }
     }
 
     #[inline]
@@ -85,21 +88,14 @@ impl Scatter for Plastic {
         }
         let coat = self.coat(wo);
         let probability = self.coat_probability(coat);
-        if lobe >= probability {
-            return BsdfSample::spread(
-                self,
-                wo,
-                warp::cosine_hemisphere(direction),
-                LobeKind::Diffuse,
-            );
-        }
-        match &self.ggx {
-            Some(ggx) => {
-                let wi = fresnel::reflect(wo, ggx.sample_visible(wo, direction));
-                BsdfSample::spread(self, wo, wi, LobeKind::Glossy)
-            }
-            None => BsdfSample::mirrored(wo, Rgb::splat(coat / probability)),
-        }
+        let (wi, kind) = if lobe >= probability {
+            (warp::cosine_hemisphere(direction), LobeKind::Diffuse)
+        } else if let Some(ggx) = &self.ggx {
+            (fresnel::reflect(wo, ggx.sample_visible(wo, direction)), LobeKind::Glossy)
+        } else {
+            return BsdfSample::mirrored(wo, Rgb::splat(coat / probability));
+        };
+        BsdfSample::spread(wi, self.value(coat, wo, wi), kind)
     }
 
     #[inline]

@@ -12,7 +12,7 @@
 use super::conductor::{loss_scale, multiple_reflectance};
 use super::energy::{self, COAT_F0, Single};
 use super::microfacet::{self, Ggx};
-use super::{BsdfSample, BsdfValue, LobeKind, Scatter, fresnel};
+use super::{BsdfSample, BsdfValue, LobeKind, Scatter, fresnel, reflectance, unit};
 use crate::math::{Rgb, Vec3};
 
 /// Parameters of [`Principled`]; all in [0, 1] unless said.
@@ -25,7 +25,8 @@ pub struct PrincipledParameters {
     /// Perceptual roughness of the main specular lobe.
     pub roughness: f32,
     /// Specular reflectance at normal incidence of the dielectric part (0.04 for eta 1.5). Below 0.02 the
-    /// reflectance at grazing angles fades too, so that 0 is purely diffuse.
+    /// reflectance at grazing angles fades too, so that 0 is purely diffuse. The diffuse lobe gets what the
+    /// largest channel leaves, so a coloured `specular` darkens the other channels.
     pub specular: Rgb,
     /// -1..1: stretches the highlight along the local x (positive) or y axis.
     pub anisotropy: f32,
@@ -74,7 +75,7 @@ pub struct Principled {
     ggx: Option<Ggx>,
     /// Its Fresnel factor, blended between dielectric and metal.
     specular: Schlick<Rgb>,
-    /// The Fresnel factor of the dielectric part alone, its largest channel.
+    /// The Fresnel factor of the dielectric part alone, the largest channel of it.
     dielectric: Schlick<f32>,
     /// Lobe of the coat; `None` smooth.
     coat_ggx: Option<Ggx>,
@@ -106,7 +107,15 @@ struct View {
 impl Principled {
     /// A surface with these parameters.
     pub fn new(p: &PrincipledParameters) -> Self {
-        let metallic = p.metallic.clamp(0.0, 1.0);
+        let p = PrincipledParameters {
+            base_color: reflectance(p.base_color),
+            metallic: unit(p.metallic),
+            specular: reflectance(p.specular),
+            clearcoat: unit(p.clearcoat),
+            sheen: unit(p.sheen),
+            ..*p
+        };
+        let metallic = p.metallic;
         let dielectric_part = 1.0 - metallic;
         let specular_max = p.specular.max_channel();
         let dielectric = Schlick { f0: specular_max, f90: (specular_max / 0.02).min(1.0) };
@@ -143,21 +152,37 @@ impl Principled {
             Separable { color: p.base_color.map(tint) * metallic, scale: loss_scale(metal_mean) };
         // Both metal and sheen have their energy there; any value is unbiased.
         let metal_grazing = surface.ggx.as_ref().map_or(0.0, energy::loss_grazing);
-        surface.grazing = metallic * metal_grazing + 0.5 * dielectric_part * p.sheen.min(1.0);
+        surface.grazing = metallic * metal_grazing + 0.5 * dielectric_part * p.sheen;
         surface
     }
 
-    /// Hemispherical means of K of the dielectric part, K of the metal, and s K of the sheen.
+    /// Hemispherical means of K of the dielectric part, K of the metal, and s K of the sheen: Gauss-Legendre
+    /// with cos = x^2, which is exact for the sheen alone.
     fn means(&self) -> [f32; 3] {
-        // cos^2 of 1/16, 5/16, 3/16 and 7/16 of half a turn: the azimuth varies with the cosine, for the sake of
-        // anisotropic lobes.
+        /// Roots of the Legendre polynomial of degree 8, and their weights.
+        const NODES: [[f32; 2]; 4] = [
+            [0.183_434_65, 0.362_683_8],
+            [0.525_532_4, 0.313_706_64],
+            [0.796_666_5, 0.222_381_03],
+            [0.960_289_86, 0.101_228_535],
+        ];
+        /// cos^2 of 1/16, 5/16, 3/16 and 7/16 of half a turn: the azimuth varies with the cosine, for the sake
+        /// of anisotropic lobes.
         const COS2_PHI: [f32; 4] = [0.961_94, 0.308_66, 0.691_34, 0.038_06];
-        let mut node = 0;
-        energy::hemisphere_mean(16, |cos| {
-            node += 1;
-            let view = self.view(energy::direction(cos, COS2_PHI[node % COS2_PHI.len()]));
-            [view.dielectric_loss, view.metal_loss, view.sheen * view.dielectric_loss]
-        })
+        let mut sum = [0.0; 3];
+        for (i, [root, weight]) in NODES.into_iter().enumerate() {
+            for (x, cos2_phi) in
+                [(0.5 - 0.5 * root, COS2_PHI[i]), (0.5 + 0.5 * root, COS2_PHI[3 - i])]
+            {
+                let view = self.view(energy::direction(x * x, cos2_phi));
+                let values =
+                    [view.dielectric_loss, view.metal_loss, view.sheen * view.dielectric_loss];
+                // 2 cos dcos = 4 x^3 dx.
+                let weight = 2.0 * x * x * x * weight;
+                (0..3).for_each(|k| sum[k] += weight * values[k]);
+            }
+        }
+        sum
     }
 
     /// Everything that depends on one direction only, w.z > 0.
@@ -207,46 +232,44 @@ impl Principled {
         let sum = coat + specular + separable.max_channel();
         if sum > 0.0 { (coat / sum, specular / sum) } else { (0.0, 0.0) }
     }
-}
 
-impl Scatter for Principled {
-    fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            return BsdfValue::ZERO;
-        }
-        let Some(h) = microfacet::reflection_half(wo, wi) else {
+    /// Value and density, given what depends on `wo` alone.
+    fn value(&self, o: &View, wo: Vec3, wi: Vec3) -> BsdfValue {
+        let Some(h) = microfacet::reflection_half(wo, wi).filter(|_| wi.z > 0.0) else {
             return BsdfValue::ZERO;
         };
-        let (o, i) = (self.view(wo), self.view(wi));
-        let (coat_probability, specular_probability) = self.probabilities(&o);
+        let i = self.view(wi);
+        let (coat_probability, specular_probability) = self.probabilities(o);
         // The separable lobes.
         let dielectric = o.dielectric_loss * i.dielectric_loss;
         let diffuse = self.diffuse.scale * dielectric * (1.0 - o.sheen) * (1.0 - i.sheen);
         let metal = self.metal.scale * o.metal_loss * i.metal_loss;
         let sheen = self.sheen_scale * dielectric * o.sheen * i.sheen;
+        let separable = self.diffuse.color * diffuse + self.metal.color * metal + Rgb::splat(sheen);
         let mut value = BsdfValue {
-            f_cos: (self.diffuse.color * diffuse + self.metal.color * metal + Rgb::splat(sheen))
-                * wi.z,
+            f_cos: separable * wi.z,
             pdf_solid_angle: (1.0 - coat_probability - specular_probability).max(0.0)
                 * energy::spread_pdf(wi.z, self.grazing),
         };
         // The specular lobe under the coat.
         let weight = fresnel::schlick_weight(wo.dot(h));
         if let Some(ggx) = &self.ggx {
-            let lobe = ggx.reflection(wo, wi, h);
             let through = 1.0 - self.clearcoat * o.coat.max(i.coat);
             let schlick = self.specular.f0.map(|f0| f0 + (self.specular.f90 - f0) * weight);
-            value.f_cos += schlick * (through * lobe.f_cos);
-            value.pdf_solid_angle += specular_probability * lobe.pdf_solid_angle;
+            value += ggx.reflection(wo, wi, h).scaled(schlick * through, specular_probability);
         }
         // The coat.
         if let Some(ggx) = self.coat_ggx.as_ref().filter(|_| self.clearcoat > 0.0) {
-            let lobe = ggx.reflection(wo, wi, h);
-            let schlick = COAT_F0 + (1.0 - COAT_F0) * weight;
-            value.f_cos += Rgb::splat(self.clearcoat * schlick * lobe.f_cos);
-            value.pdf_solid_angle += coat_probability * lobe.pdf_solid_angle;
+            let schlick = self.clearcoat * (COAT_F0 + (1.0 - COAT_F0) * weight);
+            value += ggx.reflection(wo, wi, h).scaled(Rgb::splat(schlick), coat_probability);
         }
         value
+    }
+}
+
+impl Scatter for Principled {
+    fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        if wo.z > 0.0 { self.value(&self.view(wo), wo, wi) } else { BsdfValue::ZERO }
     }
 
     fn sample(&self, wo: Vec3, lobe: f32, direction: [f32; 2]) -> Option<BsdfSample> {
@@ -255,26 +278,23 @@ impl Scatter for Principled {
         }
         let view = self.view(wo);
         let (coat_probability, specular_probability) = self.probabilities(&view);
-        let (ggx, smooth_weight) = if lobe < coat_probability {
-            (&self.coat_ggx, Rgb::splat(self.clearcoat * view.coat / coat_probability))
-        } else if lobe < coat_probability + specular_probability {
-            let through = 1.0 - self.clearcoat * view.coat;
-            let weight = through / specular_probability;
-            (
-                &self.ggx,
-                self.specular.f0.map(|f0| view.single.schlick(f0, self.specular.f90) * weight),
-            )
+        let (wi, kind) = if lobe >= coat_probability + specular_probability {
+            (energy::sample_spread(direction, self.grazing), LobeKind::Diffuse)
         } else {
-            let wi = energy::sample_spread(direction, self.grazing);
-            return BsdfSample::spread(self, wo, wi, LobeKind::Diffuse);
+            // Either interface, and its delta lobe's weight should it be smooth.
+            let (ggx, delta) = if lobe < coat_probability {
+                (&self.coat_ggx, Rgb::splat(self.clearcoat * view.coat / coat_probability))
+            } else {
+                let scale = (1.0 - self.clearcoat * view.coat) / specular_probability;
+                let schlick = |f0| view.single.schlick(f0, self.specular.f90);
+                (&self.ggx, self.specular.f0.map(schlick) * scale)
+            };
+            let Some(ggx) = ggx else {
+                return BsdfSample::mirrored(wo, delta);
+            };
+            (fresnel::reflect(wo, ggx.sample_visible(wo, direction)), LobeKind::Glossy)
         };
-        match ggx {
-            Some(ggx) => {
-                let wi = fresnel::reflect(wo, ggx.sample_visible(wo, direction));
-                BsdfSample::spread(self, wo, wi, LobeKind::Glossy)
-            }
-            None => BsdfSample::mirrored(wo, smooth_weight),
-        }
+        BsdfSample::spread(wi, self.value(&view, wo, wi), kind)
     }
 
     fn albedo(&self, wo: Vec3) -> Rgb {

@@ -50,6 +50,7 @@ impl RoughDielectric {
             let far = energy::dielectric_loss_mean(&ggx, 1.0 / eta);
             (energy::dielectric_loss_mean(&ggx, eta), eta * eta * far)
         };
+        let transmittance = super::reflectance(transmittance);
         Some(Self { ggx, eta, transmittance, thin, multiple_near, multiple_far })
     }
 
@@ -65,10 +66,10 @@ impl RoughDielectric {
         }
     }
 
-    /// Reflectance of a microfacet, the probability to choose it, and the cosine behind it.
+    /// Reflectance of a microfacet seen under this cosine, the probability to choose it, and the cosine behind.
     #[inline]
-    fn reflectance(&self, wo: Vec3, h: Vec3) -> (f32, f32, f32) {
-        let (face, cos_t) = fresnel::dielectric(wo.dot(h), self.eta);
+    fn reflectance(&self, cos: f32) -> (f32, f32, f32) {
+        let (face, cos_t) = fresnel::dielectric(cos, self.eta);
         let reflectance = if self.thin { sheet_reflectance(face) } else { face };
         (reflectance, reflection_probability(reflectance, self.transmittance), cos_t)
     }
@@ -88,60 +89,68 @@ impl RoughDielectric {
     /// Single scattering: value (with the radiance factor) and density.
     #[inline]
     fn single(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
-        let reflected = wi.z > 0.0;
-        let (h, lobe) = if reflected || self.thin {
-            let wi = if reflected { wi } else { Self::unfold(wi) };
-            let Some(h) = microfacet::reflection_half(wo, wi) else {
-                return BsdfValue::ZERO;
-            };
-            (h, self.ggx.reflection(wo, wi, h))
-        } else {
-            let Some(h) = microfacet::refraction_half(wo, wi, self.eta) else {
-                return BsdfValue::ZERO;
-            };
-            (h, self.ggx.transmission(wo, wi, h, self.eta))
-        };
-        let (reflectance, probability, _) = self.reflectance(wo, h);
-        if reflected {
-            BsdfValue {
-                f_cos: Rgb::splat(lobe.f_cos * reflectance),
-                pdf_solid_angle: lobe.pdf_solid_angle * probability,
-            }
-        } else {
-            let energy = lobe.f_cos * (1.0 - reflectance);
-            BsdfValue {
-                f_cos: self.transmittance * (energy / self.eta_scale()),
-                pdf_solid_angle: lobe.pdf_solid_angle * (1.0 - probability),
-            }
+        if wi.z < 0.0 && !self.thin {
+            return self.single_refraction(wo, wi);
         }
+        let upper = if wi.z > 0.0 { wi } else { Self::unfold(wi) };
+        let Some(h) = microfacet::reflection_half(wo, upper) else {
+            return BsdfValue::ZERO;
+        };
+        let (reflectance, probability, _) = self.reflectance(wo.dot(h));
+        let lobe = self.ggx.reflection(wo, upper, h);
+        if wi.z > 0.0 {
+            lobe.scaled(Rgb::splat(reflectance), probability)
+        } else {
+            lobe.scaled(self.transmittance * (1.0 - reflectance), 1.0 - probability)
+        }
+    }
+
+    /// [`RoughDielectric::single`] across an interface.
+    #[inline]
+    fn single_refraction(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
+        let Some(h) = microfacet::refraction_half(wo, wi, self.eta) else {
+            return BsdfValue::ZERO;
+        };
+        let reflectance = fresnel::dielectric_between(wo.dot(h), -wi.dot(h), self.eta);
+        let probability = reflection_probability(reflectance, self.transmittance);
+        self.ggx.transmission(wo, wi, h, self.eta).scaled(
+            self.transmittance * ((1.0 - reflectance) / self.eta_scale()),
+            1.0 - probability,
+        )
+    }
+
+    /// All scattering, given what single scattering loses from `wo`: multiple scattering is chosen with that
+    /// probability, and then a side by its M.
+    #[inline]
+    fn value(&self, loss: f32, wo: Vec3, wi: Vec3) -> BsdfValue {
+        if wi.z == 0.0 {
+            return BsdfValue::ZERO;
+        }
+        let single = self.single(wo, wi);
+        let multiple = self.multiple_near + self.multiple_far;
+        let mut value =
+            BsdfValue { pdf_solid_angle: (1.0 - loss) * single.pdf_solid_angle, ..single };
+        if multiple > 0.0 {
+            let cos_i = wi.z.abs();
+            let (side, tint) = if wi.z > 0.0 {
+                (self.multiple_near, Rgb::WHITE)
+            } else {
+                (self.multiple_far, self.transmittance)
+            };
+            let pdf = energy::spread_pdf(cos_i, energy::loss_grazing(&self.ggx));
+            value += BsdfValue {
+                f_cos: tint * (loss * self.loss(wi) * cos_i * FRAC_1_PI / multiple),
+                pdf_solid_angle: loss * side / multiple * pdf,
+            };
+        }
+        value
     }
 }
 
 impl Scatter for RoughDielectric {
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
-        if wo.z <= 0.0 || wi.z == 0.0 {
-            return BsdfValue::ZERO;
-        }
-        let single = self.single(wo, wi);
-        let loss = self.loss(wo);
-        let multiple = self.multiple_near + self.multiple_far;
-        if multiple <= 0.0 {
-            return single;
-        }
-        let cos_i = wi.z.abs();
-        let (side, tint) = if wi.z > 0.0 {
-            (self.multiple_near, Rgb::WHITE)
-        } else {
-            (self.multiple_far, self.transmittance)
-        };
-        let pdf_multiple =
-            energy::spread_pdf(cos_i, energy::loss_grazing(&self.ggx)) * side / multiple;
-        let f_cos = loss * self.loss(wi) * cos_i * FRAC_1_PI / multiple;
-        BsdfValue {
-            f_cos: single.f_cos + tint * f_cos,
-            pdf_solid_angle: (1.0 - loss) * single.pdf_solid_angle + loss * pdf_multiple,
-        }
+        if wo.z > 0.0 { self.value(self.loss(wo), wo, wi) } else { BsdfValue::ZERO }
     }
 
     #[inline]
@@ -149,15 +158,14 @@ impl Scatter for RoughDielectric {
         if wo.z <= 0.0 {
             return None;
         }
-        let multiple = self.multiple_near + self.multiple_far;
-        // With the probability of what single scattering loses, choose multiple scattering.
-        let loss = if multiple > 0.0 { self.loss(wo) } else { 0.0 };
+        let loss = self.loss(wo);
         let wi = if lobe < loss {
             let wi = energy::sample_spread(direction, energy::loss_grazing(&self.ggx));
-            if lobe * multiple < loss * self.multiple_near { wi } else { Self::unfold(wi) }
+            let near = self.multiple_near / (self.multiple_near + self.multiple_far);
+            if lobe < loss * near { wi } else { Self::unfold(wi) }
         } else {
             let h = self.ggx.sample_visible(wo, direction);
-            let (_, probability, cos_t) = self.reflectance(wo, h);
+            let (_, probability, cos_t) = self.reflectance(wo.dot(h));
             let reflected = fresnel::reflect(wo, h);
             if lobe - loss < (1.0 - loss) * probability {
                 (reflected.z > 0.0).then_some(reflected)?
@@ -168,18 +176,27 @@ impl Scatter for RoughDielectric {
                 (refracted.z < 0.0).then_some(refracted)?
             }
         };
+        let value = self.value(loss, wo, wi);
         if wi.z > 0.0 {
-            BsdfSample::spread(self, wo, wi, LobeKind::Glossy)
+            BsdfSample::spread(wi, value, LobeKind::Glossy)
         } else {
-            let sample = BsdfSample::spread(self, wo, wi, LobeKind::Refraction)?;
+            let sample = BsdfSample::spread(wi, value, LobeKind::Refraction)?;
             Some(BsdfSample { eta_scale: self.eta_scale(), ..sample })
         }
     }
 
     #[inline]
     fn albedo(&self, wo: Vec3) -> Rgb {
-        let (reflectance, _, _) = self.reflectance(wo, Vec3::Z);
-        Rgb::splat(reflectance) + self.transmittance * (1.0 - reflectance)
+        let single = if self.thin {
+            let single = Single::new(Some(&self.ggx), wo);
+            single.white * self.reflectance(single.cos_fresnel).0
+        } else {
+            energy::reflection_albedo(Some(&self.ggx), wo, self.eta)
+        };
+        let near =
+            self.multiple_near / (self.multiple_near + self.multiple_far).max(f32::MIN_POSITIVE);
+        let reflected = (single + self.loss(wo) * near).min(1.0);
+        Rgb::splat(reflected) + self.transmittance * (1.0 - reflected)
     }
 
     #[inline]

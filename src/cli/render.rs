@@ -6,6 +6,8 @@ use super::report::{self, Phases, Statistics};
 use super::select::{self, Settings};
 use super::{DONE, NOT_MET};
 use crate::accel::Accelerator;
+#[cfg(feature = "bvh")]
+use crate::accel::bvh::Bvh;
 #[cfg(feature = "embree")]
 use crate::accel::embree::EmbreeAccelerator;
 use crate::camera::Camera;
@@ -26,34 +28,59 @@ use std::time::Instant;
 pub(super) fn run(args: &Render) -> Result<u8> {
     let mut phases = Phases::default();
     let stop = stop_flag()?;
+    // Loading, the sky and the PNG use the global pool; a second call in one process may fail, harmlessly.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads).build_global();
 
     // Files to a scene; what the command line says goes over what the file says.
     let start = Instant::now();
+    let busy = report::busy(args, "loading");
     let outputs = Outputs::check(&args.output, &args.scene)?;
     let mut scene = load::load_scene(&args.scene)?;
     select::override_scene(args, &mut scene)?;
     let settings = Settings::resolve(args, &scene)?;
-    let inputs = load::fingerprint(&scene.inputs)?;
     phases.load = start.elapsed().as_secs_f64();
 
     // A scene to a world, and the camera in it.
     let start = Instant::now();
+    busy.set_message("building");
     let (cameras, up) = (std::mem::take(&mut scene.cameras), scene.up);
+    let (inputs, environment) = (std::mem::take(&mut scene.inputs), scene.environment);
     let world = World::compile(scene)?;
-    report::warnings(args, &world.warnings);
+    busy.suspend(|| report::warnings(args, &world.warnings));
     let (camera, description) = select::camera(args, &cameras, up, &world, settings.size)?;
-    report::choices(args, &settings, &description, &world, up);
+    let overrides = (args.background, &args.override_material, environment, up);
+    let fingerprint =
+        load::fingerprint(&inputs, &format!("{settings:?} {description:?} {overrides:?}"))?;
+    busy.suspend(|| report::choices(args, &settings, &description, &world, up));
 
     // A world to an accelerator: the only place where a backend is chosen.
+    let (geometry, threads) = (world.geometry.clone(), args.threads);
+    let mut job = Job {
+        args,
+        settings: &settings,
+        outputs: &outputs,
+        stop: &stop,
+        name: ("", String::new()),
+        fingerprint,
+    };
+    let built = |phases: &mut Phases| {
+        phases.build = start.elapsed().as_secs_f64();
+        busy.finish_and_clear();
+    };
     match backend(args.accel)? {
         #[cfg(feature = "embree")]
         Chosen::Embree => {
-            let embree = EmbreeAccelerator::build(world.geometry.clone(), args.threads)?;
-            phases.build = start.elapsed().as_secs_f64();
-            let name = ("embree", embree.version());
-            let job =
-                Job { args, settings: &settings, outputs: &outputs, stop: &stop, name, inputs };
+            let embree = EmbreeAccelerator::build(geometry, threads)?;
+            built(&mut phases);
+            job.name = ("embree", embree.version());
             finish(&job, &world, &embree, &camera, phases)
+        }
+        #[cfg(feature = "bvh")]
+        Chosen::Bvh => {
+            let bvh = Bvh::build(geometry, threads)?;
+            built(&mut phases);
+            job.name = ("bvh", env!("CARGO_PKG_VERSION").to_owned());
+            finish(&job, &world, &bvh, &camera, phases)
         }
     }
 }
@@ -62,6 +89,8 @@ pub(super) fn run(args: &Render) -> Result<u8> {
 enum Chosen {
     #[cfg(feature = "embree")]
     Embree,
+    #[cfg(feature = "bvh")]
+    Bvh,
 }
 
 fn backend(wanted: Backend) -> Result<Chosen> {
@@ -71,14 +100,12 @@ fn backend(wanted: Backend) -> Result<Chosen> {
         #[cfg(not(feature = "embree"))]
         Backend::Embree => Err(Error::Usage("--accel embree: built without Embree".into())),
         #[cfg(not(feature = "embree"))]
-        Backend::Auto => bvh_is_missing(),
-        Backend::Bvh => bvh_is_missing(),
+        Backend::Auto => Ok(Chosen::Bvh),
+        #[cfg(feature = "bvh")]
+        Backend::Bvh => Ok(Chosen::Bvh),
+        #[cfg(not(feature = "bvh"))]
+        Backend::Bvh => Err(Error::Usage("--accel bvh: built without the in-house BVH".into())),
     }
-}
-
-fn bvh_is_missing() -> Result<Chosen> {
-    let message = "this version has no in-house BVH yet: build with feature `embree`".into();
-    Err(Error::Backend { backend: "bvh", message })
 }
 
 /// What does not depend on the backend's type.
@@ -88,7 +115,7 @@ pub(super) struct Job<'a> {
     pub(super) outputs: &'a Outputs,
     pub(super) stop: &'a Arc<AtomicBool>,
     pub(super) name: (&'static str, String),
-    pub(super) inputs: String,
+    pub(super) fingerprint: String,
 }
 
 /// A world and an accelerator to files and a summary.

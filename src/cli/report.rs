@@ -21,6 +21,7 @@ use crate::world::World;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 use std::io::Write;
+use std::time::Duration;
 
 /// Wall-clock seconds of each phase.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
@@ -128,7 +129,7 @@ impl Statistics {
             rays_per_second: ledger.rays() as f64 / rendered.seconds.max(1e-9),
             ledger: StageTable { stages: stage_rows(ledger) },
             non_finite: rendered.non_finite.count,
-            fingerprint: job.inputs.clone(),
+            fingerprint: job.fingerprint.clone(),
         }
     }
 }
@@ -215,6 +216,20 @@ pub(super) fn choices(
             say(args, "hint: the model seems to stand along z; if it lies on its back, try --up z");
         }
     }
+}
+
+/// Something that moves on a terminal while there is no telling how long it will take.
+pub(super) fn busy(args: &Render, what: &'static str) -> ProgressBar {
+    if args.quiet {
+        return ProgressBar::hidden();
+    }
+    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(5));
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed_precise}") {
+        spinner.set_style(style);
+    }
+    spinner.set_message(what);
+    spinner.enable_steady_tick(Duration::from_millis(200));
+    spinner
 }
 
 /// A bar with an ETA on stderr when that is a terminal; otherwise nothing.
@@ -319,7 +334,7 @@ pub(super) fn metadata(
     vec![
         ("glint.version", text(env!("CARGO_PKG_VERSION").into())),
         ("glint.command", text(command())),
-        ("glint.fingerprint", text(job.inputs.clone())),
+        ("glint.fingerprint", text(job.fingerprint.clone())),
         ("glint.size", text(format!("{width}x{height}"))),
         ("glint.region", text(format!("{},{},{},{}", start[0], start[1], end[0], end[1]))),
         (

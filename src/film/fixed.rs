@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     /// 2^-64.
-    const STEP: f32 = 5.421_010_9e-20;
+    const STEP: f32 = 5.421_011e-20;
 
     #[test]
     fn exact_for_every_ordinary_value() {

@@ -114,6 +114,11 @@ impl Geometry {
         (world, instance.condition * (largest + instance.translation_magnitude))
     }
 
+    /// Whether there is any mesh that hit filters must be asked about.
+    pub fn has_filtered_meshes(&self) -> bool {
+        self.all_meshes().any(|m| m.filtered)
+    }
+
     /// Number of triangles stored (instances not multiplied).
     pub fn stored_triangles(&self) -> usize {
         self.all_meshes().map(|m| m.triangles.len()).sum()

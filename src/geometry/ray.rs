@@ -60,8 +60,8 @@ impl PrimitiveId {
 
 /// The closest surface along a ray, or a miss.
 ///
-/// `t`, `u`, `v` and `offset` are recomputed from the ray and the three vertices by
-/// [`super::intersect_triangle`], so that they have the same bits for every backend.
+/// All but `id` is recomputed from the ray and the three vertices by
+/// [`super::intersect_triangle`], so that it has the same bits for every backend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Ray parameter; infinite for a miss.
@@ -72,14 +72,26 @@ pub struct Hit {
     pub v: f32,
     /// How far along the geometric normal a ray must start to be past the surface for sure.
     pub offset: f32,
+    /// The point at (u, v).
+    pub point: Vec3,
+    /// Unit normal of the triangle in world space, on the side its transformed winding faces. (Kept with
+    /// the point, because fetching the vertices a second time costs more than carrying both.)
+    pub normal: Vec3,
     /// Which primitive.
     pub id: PrimitiveId,
 }
 
 impl Hit {
     /// The ray left the scene.
-    pub const MISS: Self =
-        Self { t: f32::INFINITY, u: 0.0, v: 0.0, offset: 0.0, id: PrimitiveId::MISS };
+    pub const MISS: Self = Self {
+        t: f32::INFINITY,
+        u: 0.0,
+        v: 0.0,
+        offset: 0.0,
+        point: Vec3::ZERO,
+        normal: Vec3::ZERO,
+        id: PrimitiveId::MISS,
+    };
 
     /// Whether anything was hit.
     #[inline]

@@ -3,13 +3,13 @@
 //! Backends decide only which triangle is hit; this decides t, u and v, in `f64` and in a fixed order
 //! of operations, so every backend, ISA and Embree version that agrees on the triangle gives the same
 //! bits. Source of the test: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
-//! 1997. Source of the offset: Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013, and pbrt 4th ed.,
+//! 1997, in the form that yields the normal on the way. Source of the offset: Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013, and pbrt 4th ed.,
 //! section 6.8, with the magnitudes that Embree's robust kernel works on.
 
 use super::Ray;
 use crate::math::{DVec3, UNIT_ROUNDOFF, Vec3};
 
-/// Parameters of a ray-triangle intersection.
+/// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// Ray parameter, at least the ray's `t_min`.
@@ -18,33 +18,47 @@ pub struct TriangleHit {
     pub u: f32,
     /// Weight of the third vertex, in [0, 1 - u].
     pub v: f32,
+    /// The point on the triangle at (u, v).
+    pub point: Vec3,
+    /// Unit normal of the triangle, on the side its winding faces.
+    pub normal: Vec3,
 }
 
 /// Where `ray` meets the plane of `vertices`, with the barycentrics clamped to the triangle.
 ///
-/// `None` only when the ray is parallel to the plane or the triangle has no area. The inputs are
-/// `f32` values (or `f64` images of them under an instance), so differences and products below are
-/// exact or carry relative errors near 1e-16: after rounding, t, u and v are the true values but for
-/// half a unit in the last place, except for slivers whose height is below 1e-9 of their length.
+/// The inputs are `f32` values (or `f64` images of them under an instance), so differences and products
+/// below are exact or carry relative errors near 1e-16: after rounding, t, u and v are the true values but
+/// for half a unit in the last place, except for slivers whose height is below 1e-9 of their length.
+/// A triangle seen edge-on or without area, which only a backend's rounding can find, is hit at its
+/// first vertex, and its normal faces the ray if it has none.
 #[inline]
-pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> Option<TriangleHit> {
+pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> TriangleHit {
     let [a, b, c] = *vertices;
     let direction = ray.direction.as_dvec3();
     let (ab, ac) = (b - a, c - a);
-    // det = ab . (direction x ac): zero when the ray lies in the plane.
-    let p = direction.cross(ac);
-    let det = ab.dot(p);
-    if det == 0.0 || !det.is_finite() {
-        return None;
-    }
-    let inverse = 1.0 / det;
+    // Cramer's rule on o + t d = a + u ab + v ac, with the normal as one of the two cross products.
+    let area_vector = ab.cross(ac);
     let s = ray.origin.as_dvec3() - a;
-    let q = s.cross(ab);
-    let u = (s.dot(p) * inverse) as f32;
-    let v = (direction.dot(q) * inverse) as f32;
-    let t = (ac.dot(q) * inverse) as f32;
-    let u = u.clamp(0.0, 1.0);
-    Some(TriangleHit { t: t.max(ray.t_min), u, v: v.clamp(0.0, 1.0 - u) })
+    let det = -direction.dot(area_vector);
+    let (t, u, v);
+    if det != 0.0 && det.is_finite() {
+        let inverse = 1.0 / det;
+        let q = s.cross(direction);
+        t = (s.dot(area_vector) * inverse) as f32;
+        u = ((ac.dot(q) * inverse) as f32).clamp(0.0, 1.0);
+        v = ((-ab.dot(q) * inverse) as f32).clamp(0.0, 1.0 - u);
+    } else {
+        t = (-s.dot(direction) / direction.length_squared()) as f32;
+        (u, v) = (0.0, 0.0);
+    }
+    let length = area_vector.length();
+    let normal = if length > 0.0 {
+        (area_vector * (1.0 / length)).as_vec3()
+    } else {
+        -ray.direction.normalize()
+    };
+    let point = (a + ab * f64::from(u) + ac * f64::from(v)).as_vec3();
+    TriangleHit { t: t.max(ray.t_min), u, v, point, normal }
 }
 
 /// How far along the unit geometric normal a ray that leaves `point` on the triangle must start, so
@@ -67,21 +81,29 @@ pub fn offset_distance(point: Vec3, vertices: &[DVec3; 3], instance_magnitude: f
 mod tests {
     use super::*;
 
+    const TRIANGLE: [DVec3; 3] = [DVec3::ZERO, DVec3::X, DVec3::Y];
+
     #[test]
     fn known_intersection() {
-        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let ray = Ray::new(Vec3::new(0.25, 0.5, 2.0), Vec3::new(0.0, 0.0, -0.5));
-        let hit = intersect_triangle(&ray, &triangle);
-        assert_eq!(hit, Some(TriangleHit { t: 4.0, u: 0.25, v: 0.5 }));
-        let parallel = Ray::new(Vec3::new(0.0, 0.0, 1.0), Vec3::X);
-        assert_eq!(intersect_triangle(&parallel, &triangle), None);
+        let hit = intersect_triangle(&ray, &TRIANGLE);
+        let point = Vec3::new(0.25, 0.5, 0.0);
+        assert_eq!(hit, TriangleHit { t: 4.0, u: 0.25, v: 0.5, point, normal: Vec3::Z });
+    }
+
+    #[test]
+    fn edge_on_is_the_first_vertex() {
+        let ray = Ray::new(Vec3::new(-3.0, 0.0, 0.0), Vec3::X);
+        let hit = intersect_triangle(&ray, &TRIANGLE);
+        assert_eq!((hit.t, hit.point, hit.normal), (3.0, Vec3::ZERO, Vec3::Z));
+        let needle = [DVec3::ZERO, DVec3::X, DVec3::X * 2.0];
+        assert_eq!(intersect_triangle(&ray, &needle).normal, -Vec3::X);
     }
 
     #[test]
     fn outside_is_clamped_to_the_triangle() {
-        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
         let ray = Ray::new(Vec3::new(0.9, 0.9, 1.0), Vec3::new(0.0, 0.0, -1.0));
-        let hit = intersect_triangle(&ray, &triangle).expect("not parallel");
+        let hit = intersect_triangle(&ray, &TRIANGLE);
         assert!(hit.u + hit.v <= 1.0 && hit.t == 1.0);
     }
 }

@@ -10,6 +10,9 @@ use crate::bsdf::{
 
 /// A model of the closed set, and its place in the enum.
 pub(super) trait Model: Scatter + Copy {
+    /// Whether `sample` depends on the number that chooses a lobe: not where there is one lobe only.
+    const HAS_LOBES: bool;
+
     /// The model in a BSDF of this model's group.
     fn of(bsdf: &Bsdf) -> &Self;
 }
@@ -29,7 +32,7 @@ pub(super) struct Groups {
 }
 
 macro_rules! models {
-    ($($model:ident),*) => {
+    ($($model:ident $has_lobes:literal),*) => {
         const MODELS: usize = [$(stringify!($model)),*].len();
 
         /// Place of a BSDF's model in the closed set.
@@ -40,6 +43,8 @@ macro_rules! models {
         }
 
         $(impl Model for $model {
+            const HAS_LOBES: bool = $has_lobes;
+
             #[inline]
             fn of(bsdf: &Bsdf) -> &Self {
                 match bsdf {
@@ -66,7 +71,16 @@ macro_rules! models {
     };
 }
 
-models!(Lambert, OrenNayar, Mirror, Dielectric, RoughDielectric, Conductor, Plastic, Principled);
+models!(
+    Lambert false,
+    OrenNayar false,
+    Mirror false,
+    Dielectric true,
+    RoughDielectric true,
+    Conductor true,
+    Plastic true,
+    Principled true
+);
 
 impl Groups {
     /// Room for `capacity` vertices.

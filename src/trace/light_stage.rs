@@ -59,7 +59,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
                 Some(end) => Ray::between(origin, end),
                 None => Ray::new(origin, light.direction),
             };
-            ray.id = path.sampler.ray_id(bounce, RayKind::Shadow as u32);
+            ray.id = self.tracer.ray_id(&path.sampler, bounce, RayKind::Shadow);
             self.shadow_rays.push(ray);
             self.shadow_gains.push((vertex.slot, gain));
         }

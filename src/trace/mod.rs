@@ -98,7 +98,7 @@ impl<A: Accelerator> Tracer<'_, A> {
         let film = [0, 1].map(|k| pixel[k] as f32 + 0.5 + offset[k]);
         let lens = if self.camera.needs_lens() { sampler.two(Dimension::Lens) } else { [0.5; 2] };
         let mut start = self.camera.ray(film, lens);
-        start.ray.id = sampler.ray_id(0, RayKind::Path as u32);
+        start.ray.id = self.ray_id(&sampler, 0, RayKind::Path);
         CameraStart {
             sampler,
             weight,
@@ -106,6 +106,14 @@ impl<A: Accelerator> Tracer<'_, A> {
             spread: start.spread,
             width: start.initial_width,
         }
+    }
+}
+
+impl<A> Tracer<'_, A> {
+    /// What hit filters know a ray by; 0 where no filter will ask.
+    #[inline]
+    fn ray_id(&self, numbers: &PathSampler, bounce: u32, kind: RayKind) -> u32 {
+        if self.world.has_cut_outs() { numbers.ray_id(bounce, kind as u32) } else { 0 }
     }
 }
 

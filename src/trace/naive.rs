@@ -90,7 +90,7 @@ fn incoming<A: Accelerator, F: HitFilter>(
                 Some(end) => Ray::between(origin, end),
                 None => Ray::new(origin, light.direction),
             };
-            let id = numbers.ray_id(bounce, RayKind::Shadow as u32);
+            let id = tracer.ray_id(numbers, bounce, RayKind::Shadow);
             let mut blocked = [false];
             tracer.accelerator.occluded(&[Ray { id, ..segment }], filter, &mut blocked);
             if same_side && !blocked[0] {
@@ -130,7 +130,7 @@ fn incoming<A: Accelerator, F: HitFilter>(
         cone: [state.cone[0], state.cone[1] + spread],
         absorption: if crossed { inside } else { state.absorption },
     };
-    let id = numbers.ray_id(bounce + 1, RayKind::Path as u32);
+    let id = tracer.ray_id(numbers, bounce + 1, RayKind::Path);
     let ray = Ray { id, ..Ray::new(at.origin_towards(wi), wi) };
     let scattered = incoming(tracer, filter, numbers, ray, next);
     transmitted * (radiance + sample.weight * scattered * (1.0 / survival))

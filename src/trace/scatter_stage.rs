@@ -40,7 +40,10 @@ fn scatter<M: Model, A: Accelerator>(
     tracer: &Tracer<'_, A>,
 ) -> bool {
     let bounce = path.bounce;
-    let lobe = path.sampler.one(Dimension::ScatterLobe { bounce });
+    let lobe = match M::HAS_LOBES {
+        true => path.sampler.one(Dimension::ScatterLobe { bounce }),
+        false => 0.0,
+    };
     let direction = path.sampler.two(Dimension::ScatterDirection { bounce });
     let Some(sample) = model.sample(vertex.wo, lobe, direction) else {
         return false;
@@ -66,6 +69,6 @@ fn scatter<M: Model, A: Accelerator>(
     path.eta_scale *= sample.eta_scale;
     path.bounce += 1;
     path.ray = Ray::new(vertex.at.origin_towards(wi), wi);
-    path.ray.id = path.sampler.ray_id(path.bounce, RayKind::Path as u32);
+    path.ray.id = tracer.ray_id(&path.sampler, path.bounce, RayKind::Path);
     true
 }

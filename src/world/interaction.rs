@@ -7,7 +7,7 @@
 use super::World;
 use super::material::{lookup, wrap_of};
 use crate::geometry::{Hit, NONE, Ray};
-use crate::math::{DVec3, Frame, Vec3};
+use crate::math::{Frame, Vec3};
 use crate::scene::{MaterialId, NormalInput, TextureReference};
 
 /// The surface where a ray met it, seen from the side the ray came from.
@@ -43,25 +43,16 @@ impl SurfaceInteraction {
 impl World {
     /// Expands `hit`, which must be one, of `ray`, whose cone is `width` wide there.
     pub fn interact(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfaceInteraction {
-        let ([a, b, c], _) = self.geometry.world_vertices(hit.id);
-        let (ab, ac) = (b - a, c - a);
-        let (u, v) = (f64::from(hit.u), f64::from(hit.v));
-        let point = (a + ab * u + ac * v).as_vec3();
         let mirrored = hit.id.instance != NONE && self.instances[hit.id.instance as usize].1;
-
-        // Geometric normal in f64: slivers keep their direction.
-        let area_vector = ab.cross(ac);
-        let outward = normalize_or(area_vector, -ray.direction.as_dvec3());
-        let outward = if mirrored { -outward } else { outward };
+        let outward = if mirrored { -hit.normal } else { hit.normal };
         let entering = outward.dot(ray.direction) < 0.0;
         let n_geometric = if entering { outward } else { -outward };
-
         let surface = self.surface(hit.id);
-        let corners = self.geometry.mesh(hit.id).triangles[hit.id.primitive as usize];
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
 
         let mut n_shading = n_geometric;
         if !surface.normals.is_empty() {
+            let corners = self.corners(hit.id);
             let normal = interpolate(corners, weights, |i| Vec3::from_array(surface.normals[i]));
             let normal = match hit.id.instance {
                 NONE => normal,
@@ -73,9 +64,10 @@ impl World {
             }
         }
 
-        let material = self.material_id(hit.id);
+        let material = surface.materials[hit.id.primitive as usize];
+        let material = self.overridden(hit.id, material);
         let mut interaction = SurfaceInteraction {
-            point,
+            point: hit.point,
             offset: hit.offset,
             n_geometric,
             frame: Frame::from_normal(n_shading),
@@ -85,13 +77,16 @@ impl World {
             material,
         };
         if !surface.uvs.is_empty() {
+            let corners = self.corners(hit.id);
+            let ([a, b, c], _) = self.geometry.world_vertices(hit.id);
+            let (ab, ac) = (b - a, c - a);
             let [uv_a, uv_b, uv_c] = corners.map(|i| surface.uvs[i as usize]);
             let mix = |k: usize| weights[0] * uv_a[k] + weights[1] * uv_b[k] + weights[2] * uv_c[k];
             interaction.uv = [mix(0), mix(1)];
             let (du1, dv1) = (uv_b[0] - uv_a[0], uv_b[1] - uv_a[1]);
             let (du2, dv2) = (uv_c[0] - uv_a[0], uv_c[1] - uv_a[1]);
             let uv_area = du1 * dv2 - dv1 * du2;
-            let area = area_vector.length() as f32;
+            let area = ab.cross(ac).length() as f32;
             // The cone's section on the surface, as if it were as wide as it is long.
             let cos_theta = (-ray.direction).dot(n_geometric).max(0.05);
             interaction.footprint = width * (uv_area.abs() / area / cos_theta).sqrt();
@@ -161,18 +156,11 @@ fn interpolate(corners: [u32; 3], weights: [f32; 3], value: impl Fn(usize) -> Ve
     a * weights[0] + b * weights[1] + c * weights[2]
 }
 
-#[inline]
-fn normalize_or(v: DVec3, fallback: DVec3) -> Vec3 {
-    let length = v.length();
-    if length > 0.0 { (v / length).as_vec3() } else { fallback.normalize().as_vec3() }
-}
-
 /// Turns the frame as little as needed for its normal to face `wo`: an interpolated normal may point
-/// away near silhouettes.
+/// away near silhouettes. `wo` is a unit vector.
 #[inline]
 fn facing(frame: Frame, wo: Vec3) -> Frame {
     const GRAZING: f32 = 1e-3;
-    let wo = wo.normalize();
     let cos_theta = frame.normal.dot(wo);
     if cos_theta >= GRAZING {
         return frame;

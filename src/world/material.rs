@@ -2,8 +2,7 @@
 
 use super::{SurfaceInteraction, World};
 use crate::bsdf::{
-    Bsdf, Conductor, Dielectric, Lambert, Mirror, OrenNayar, Plastic, Principled,
-    PrincipledParameters, RoughDielectric,
+    Bsdf, Conductor, Lambert, Mirror, OrenNayar, Plastic, Principled, PrincipledParameters,
 };
 use crate::math::Rgb;
 use crate::scene::{
@@ -23,12 +22,7 @@ impl World {
             }
             Surface::Mirror { reflectance } => Bsdf::Mirror(Mirror::new(color(reflectance))),
             Surface::Dielectric { eta, roughness, transmittance, thin, .. } => {
-                let roughness = scalar(roughness);
-                let side = at.entering;
-                match RoughDielectric::new(*eta, side, *transmittance, *thin, roughness) {
-                    Some(rough) => Bsdf::RoughDielectric(rough),
-                    None => Bsdf::Dielectric(Dielectric::new(*eta, side, *transmittance, *thin)),
-                }
+                Bsdf::dielectric(*eta, at.entering, *transmittance, *thin, scalar(roughness))
             }
             Surface::Conductor { eta, k, roughness, anisotropy } => {
                 Bsdf::Conductor(Conductor::new(*eta, *k, scalar(roughness), *anisotropy))
@@ -139,9 +133,9 @@ pub(super) fn wrap_of(texture: &TextureReference) -> Wrap {
 /// An alpha cut-out by an image without alpha cuts nothing out: such a texture is dropped here, so
 /// that its triangles need no filter.
 pub(super) fn drop_alpha_of_opaque_images(material: &mut Material, textures: &[MipMap]) {
-    if let Some((texture, Channel::Alpha)) = material.opacity.texture {
-        if !textures[texture.image.index()].image().has_alpha() {
-            material.opacity.texture = None;
-        }
+    if let Some((texture, Channel::Alpha)) = material.opacity.texture
+        && !textures[texture.image.index()].image().has_alpha()
+    {
+        material.opacity.texture = None;
     }
 }

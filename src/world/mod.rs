@@ -34,6 +34,7 @@ pub struct World {
     pub lights: Lights,
     /// What could not be used.
     pub warnings: Vec<Warning>,
+    has_cut_outs: bool,
     materials: Vec<Material>,
     textures: Vec<MipMap>,
     /// Attributes of `geometry.meshes`.
@@ -68,6 +69,7 @@ impl World {
         }
         let bounds = placed.geometry.bounds();
         let mut world = Self {
+            has_cut_outs: placed.geometry.has_filtered_meshes(),
             geometry: Arc::new(placed.geometry),
             origin: placed.origin,
             bounds,
@@ -116,20 +118,30 @@ impl World {
     }
 
     /// Whether hit filters must be asked at all.
+    #[inline]
     pub fn has_cut_outs(&self) -> bool {
-        let objects = self.geometry.objects.iter().flat_map(|o| &o.meshes);
-        self.geometry.meshes.iter().chain(objects).any(|m| m.filtered)
+        self.has_cut_outs
     }
 
     /// The material of a primitive.
     #[inline]
     pub fn material_id(&self, id: PrimitiveId) -> MaterialId {
-        let own = self.surface(id).materials[id.primitive as usize];
-        if id.instance == NONE {
-            own
-        } else {
-            self.instances[id.instance as usize].0.unwrap_or(own)
+        self.overridden(id, self.surface(id).materials[id.primitive as usize])
+    }
+
+    /// `own`, or what the instance that `id` is in puts in its place.
+    #[inline]
+    fn overridden(&self, id: PrimitiveId, own: MaterialId) -> MaterialId {
+        match id.instance {
+            NONE => own,
+            instance => self.instances[instance as usize].0.unwrap_or(own),
         }
+    }
+
+    /// Vertex indices of a primitive.
+    #[inline]
+    fn corners(&self, id: PrimitiveId) -> [u32; 3] {
+        self.geometry.mesh(id).triangles[id.primitive as usize]
     }
 
     /// The material description behind an id.
@@ -145,8 +157,7 @@ impl World {
         if surface.uvs.is_empty() {
             return [0.0; 2];
         }
-        let corners = self.geometry.mesh(id).triangles[id.primitive as usize];
-        let [a, b, c] = corners.map(|i| surface.uvs[i as usize]);
+        let [a, b, c] = self.corners(id).map(|i| surface.uvs[i as usize]);
         [0, 1].map(|k| (1.0 - u - v) * a[k] + u * b[k] + v * c[k])
     }
 

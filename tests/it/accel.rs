@@ -49,14 +49,17 @@ fn scene() -> Arc<Geometry> {
 }
 
 /// Keeps the odd triangles, and depends on the ray too.
+#[cfg(feature = "embree")]
 struct OddOnly;
 
+#[cfg(feature = "embree")]
 impl HitFilter for OddOnly {
     fn accept(&self, ray: &Ray, candidate: &Hit) -> bool {
         (candidate.id.primitive + ray.id) % 2 == 1
     }
 }
 
+#[cfg(feature = "embree")]
 fn random_rays(n: u32) -> Vec<Ray> {
     let mut rng = CounterRng::new(0);
     (0..n)
@@ -74,6 +77,7 @@ fn random_rays(n: u32) -> Vec<Ray> {
 }
 
 /// Compares a backend with brute force; returns (hits, rays that miss by a silhouette's rounding).
+#[cfg(feature = "embree")]
 fn compare<A: Accelerator, F: HitFilter>(
     backend: &A,
     brute: &BruteForce,
@@ -212,4 +216,12 @@ fn brute_force_prefers_the_smallest_id_on_ties() {
     BruteForce::new(Arc::new(geometry)).closest(&[ray], &AcceptAll, &mut hit);
     assert_eq!((hit[0].id.instance, hit[0].id.geometry), (NONE, 0));
     assert_ne!(hit[0].id, PrimitiveId::MISS);
+}
+
+#[cfg(feature = "bvh")]
+#[test]
+fn the_bvh_says_that_it_is_not_there_yet() {
+    use glint::accel::bvh::Bvh;
+    let refusal = Bvh::build(scene(), 1).expect_err("there is none").to_string();
+    assert!(refusal.starts_with("bvh: ") && refusal.contains("--accel embree"), "{refusal}");
 }

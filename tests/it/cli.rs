@@ -289,14 +289,16 @@ fn json_goes_to_stdout_and_quiet_is_quiet() {
 }
 
 #[test]
-fn the_fingerprint_follows_the_contents() {
-    let fingerprint = |obj: &str| {
+fn the_fingerprint_follows_contents_and_settings() {
+    let fingerprint_at = |obj: &str, seed: &str| {
         let bench = Bench::new();
         bench.file("model.obj", obj);
-        assert_eq!(bench.render(&["model.obj", "-o", "a.exr"]).0, 0);
+        assert_eq!(bench.render(&["model.obj", "-o", "a.exr", "--seed", seed]).0, 0);
         channels(&bench.path("a.exr")).metadata["glint.fingerprint"].clone()
     };
+    let fingerprint = |obj: &str| fingerprint_at(obj, "0");
     assert_eq!(fingerprint(TRIANGLE), fingerprint(TRIANGLE));
+    assert_ne!(fingerprint(TRIANGLE), fingerprint_at(TRIANGLE, "1"));
     assert_ne!(fingerprint(TRIANGLE), fingerprint(&TRIANGLE.replace("v 1 0 0", "v 2 0 0")));
 }
 

@@ -1,5 +1,7 @@
 //! The one integration binary: physics, statistics and rules of the house.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
 mod accel;
 mod allocation;
 mod bsdf;

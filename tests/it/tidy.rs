@@ -276,7 +276,8 @@ fn rule_9_every_scene_is_introduced() {
 }
 
 fn not_introduced(scenes: &[String], text: &str) -> Violations {
-    scenes.iter().filter(|name| !text.contains(&format!("`{name}`"))).cloned().collect()
+    let named = |name| [format!("`{name}`"), format!("{name}/")].iter().any(|n| text.contains(n));
+    scenes.iter().filter(|name| !named(*name)).cloned().collect()
 }
 
 // What the rules are made of.

@@ -13,7 +13,8 @@ use std::sync::LazyLock;
 pub(in super::super) const COAT_F0: f32 = 0.04;
 
 /// With e the albedo of the coat, the mean of max(e(wi) - e(wo), 0) over the light singly scattered by `base`
-/// from `wo`; 0 for a smooth base, which scatters to the same cosine.
+/// from `wo`; 0 for a smooth base, which scatters to the same cosine. An anisotropic base counts as the
+/// isotropic one of the same highlight area.
 #[inline]
 pub(in super::super) fn coat_excess(base: Option<&Ggx>, coat: Option<&Ggx>, wo: Vec3) -> f32 {
     let Some(base) = base else {

@@ -68,11 +68,18 @@ impl Builder {
         let read = |request: &ImageRequest| image::read(&request.path, request.color_space);
         let decoded: Vec<_> = requests.par_iter().map(read).collect();
         for (request, result) in requests.into_iter().zip(decoded) {
-            let image = result.unwrap_or_else(|error| {
-                let message = format!("{error}; a stand-in colour is shown instead");
-                scene.warnings.push(Warning { location: Some(request.location), message });
+            let mut warn = |message| {
+                scene.warnings.push(Warning { location: Some(request.location.clone()), message });
+            };
+            let mut image = result.unwrap_or_else(|error| {
+                warn(format!("{error}; a stand-in colour is shown instead"));
                 Image::missing()
             });
+            let repaired = image.replace_non_finite();
+            if repaired > 0 {
+                let name = request.path.display();
+                warn(format!("{name}: {repaired} numbers that are NaN or infinite, taken as 0"));
+            }
             scene.images.push(Arc::new(image));
             scene.inputs.push(request.path);
         }

@@ -7,7 +7,7 @@
 //!
 //! Source: K. Pearson, Philosophical Magazine 50, 1900; its use for BSDFs is that of the Mitsuba renderer.
 
-use glint::math::Vec3;
+use glint::math::{Vec3, fun::double};
 use glint::sampling::CounterRng;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::TAU;
@@ -20,7 +20,7 @@ const CELLS: usize = 48;
 /// Significance of one of `comparisons` tests so that all together raise a false alarm with probability
 /// 1e-6 (Sidak 1967).
 pub(crate) fn sidak(comparisons: usize) -> f64 {
-    1.0 - (1.0 - 1e-6_f64).powf(1.0 / comparisons as f64)
+    1.0 - double::pow(1.0 - 1e-6, 1.0 / comparisons as f64)
 }
 
 /// p-value of the hypothesis that `sample` (`None`: absorbed) has the density `pdf` over solid angle, from
@@ -68,7 +68,9 @@ pub(crate) fn p_value(
         }
     }
     assert!(pools > 1, "the density is concentrated in one cell");
-    ChiSquared::new(f64::from(pools - 1)).unwrap().sf(statistic)
+    ChiSquared::new(f64::from(pools - 1))
+        .expect("a positive number of degrees of freedom")
+        .sf(statistic)
 }
 
 /// A direction in cylindrical coordinates, which preserve area.
@@ -80,7 +82,7 @@ struct Point {
 
 impl Point {
     fn of(w: Vec3) -> Self {
-        let phi = f64::from(w.y).atan2(f64::from(w.x));
+        let phi = double::atan2(w.y.into(), w.x.into());
         Self { z: f64::from(w.z), phi: if phi < 0.0 { phi + TAU } else { phi } }
     }
 }
@@ -135,7 +137,11 @@ impl Cell {
             let r = (1.0 - z * z).max(0.0).sqrt();
             for (y, weight_y) in NODES {
                 let phi = at(self.phi, y);
-                let w = Vec3::new((r * phi.cos()) as f32, (r * phi.sin()) as f32, z as f32);
+                let w = Vec3::new(
+                    (r * double::cos(phi)) as f32,
+                    (r * double::sin(phi)) as f32,
+                    z as f32,
+                );
                 sum += weight_x * weight_y * f64::from(pdf(w));
             }
         }
@@ -154,8 +160,8 @@ impl Cell {
         let quarters = self.quarters();
         let parts = quarters.map(|quarter| quarter.gauss(pdf));
         let sum: f64 = parts.iter().sum();
-        let settled = (sum - estimate).abs() <= 1e-7 + 1e-4 * sum;
-        if depth == 0 || settled && pilot.len() <= 16 {
+        let settled = (sum - estimate).abs() <= 1e-7 + 3e-4 * sum;
+        if depth == 0 || settled && pilot.len() <= 32 {
             return sum;
         }
         let pilots = self.split(pilot);

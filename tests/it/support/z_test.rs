@@ -3,6 +3,8 @@
 //! False alarms: a correct mean of nearly normal samples leaves six standard errors with probability
 //! 2e-9; the binary makes fewer than 200 such comparisons, so all of them together stay below 1e-6.
 
+#![cfg(feature = "embree")]
+
 const SIGMAS: f64 = 6.0;
 /// Rounding of `f32` arithmetic along a path, relative: no statistics can be finer.
 const ROUNDING: f64 = 3e-5;
