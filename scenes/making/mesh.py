@@ -85,7 +85,7 @@ def number(x, digits):
 
 
 def normalize(v):
-    length = math.sqrt(sum(x * x for x in v)) or 1
+    length = math.sqrt(math.fsum(x * x for x in v)) or 1
     return tuple(x / length for x in v)
 
 

@@ -27,7 +27,7 @@ class Batch:
 
     def quad(self, material, corner, u, v):
         """corner, corner + u, corner + u + v, corner + v: counter-clockwise from where it is seen."""
-        add = lambda *vectors: tuple(sum(c) for c in zip(*vectors))
+        add = lambda *vectors: tuple(math.fsum(c) for c in zip(*vectors))
         self.quads.setdefault(material, []).append((corner, add(corner, u), add(corner, u, v), add(corner, v)))
 
     def mesh(self, material):

@@ -42,7 +42,7 @@ def smooth(profile, steps=2):
             t = i / steps
             weights = (-0.5 * t + t * t - 0.5 * t**3, 1 - 2.5 * t * t + 1.5 * t**3,
                        0.5 * t + 2 * t * t - 1.5 * t**3, -0.5 * t * t + 0.5 * t**3)
-            result.append(tuple(sum(w * p[k] for w, p in zip(weights, (p0, p1, p2, p3))) for k in (0, 1)))
+            result.append(tuple(math.fsum(w * p[k] for w, p in zip(weights, (p0, p1, p2, p3))) for k in (0, 1)))
     return result + [profile[-1]]
 
 

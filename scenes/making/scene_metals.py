@@ -1,5 +1,7 @@
 """Three steps for three metals, with a rounded nosing on each."""
 
+import math
+
 from .mesh import Mesh, Obj
 from .shapes import arc
 
@@ -25,9 +27,9 @@ def make(folder):
     # Neighbouring pieces share normals where they turn by little.
     for i in range(len(faces) - 1):
         a, b = normals[4 * i + 2], normals[4 * i + 4]
-        if sum(x * y for x, y in zip(a, b)) > 0.9:
+        if math.fsum(x * y for x, y in zip(a, b)) > 0.9:
             middle = [x + y for x, y in zip(a, b)]
-            size = sum(x * x for x in middle) ** 0.5
+            size = math.fsum(x * x for x in middle) ** 0.5
             for k in (4 * i + 2, 4 * i + 3, 4 * i + 4, 4 * i + 5):
                 normals[k] = tuple(x / size for x in middle)
     obj = Obj('steps for the metals')

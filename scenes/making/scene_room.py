@@ -92,8 +92,8 @@ Kd 0.75 0.7 0.6
 
 def wall(corner, u, v, meters):
     """A rectangle with texture coordinates in repetitions of `meters`."""
-    add = lambda *vectors: tuple(sum(c) for c in zip(*vectors))
-    length = lambda w: math.sqrt(sum(x * x for x in w)) / meters
+    add = lambda *vectors: tuple(math.fsum(c) for c in zip(*vectors))
+    length = lambda w: math.sqrt(math.fsum(x * x for x in w)) / meters
     points = [corner, add(corner, u), add(corner, u, v), add(corner, v)]
     return Mesh(points, [(0, 1, 2, 3)], None, [(0, 0), (length(u), 0), (length(u), length(v)), (0, length(v))])
 

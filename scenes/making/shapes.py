@@ -127,11 +127,11 @@ def tube(curve, count, sides, radius):
         tangent = normalize([a - b for a, b in zip(curve(t + h), curve(t - h))])
         if side is None:
             side = normalize(cross(tangent, (0.3, 1, 0.2)))
-        side = normalize([s - d * sum(a * b for a, b in zip(side, tangent)) for s, d in zip(side, tangent)])
+        side = normalize([s - d * math.fsum(a * b for a, b in zip(side, tangent)) for s, d in zip(side, tangent)])
         frames.append((curve(t), tangent, side))
     first, last = frames[0], frames[-1]
     other = cross(first[1], first[2])
-    twist = math.atan2(sum(a * b for a, b in zip(last[2], other)), sum(a * b for a, b in zip(last[2], first[2])))
+    twist = math.atan2(math.fsum(a * b for a, b in zip(last[2], other)), math.fsum(a * b for a, b in zip(last[2], first[2])))
     for i, (center, tangent, side) in enumerate(frames):
         other = cross(tangent, side)
         for k in range(sides + 1):

@@ -1,6 +1,8 @@
 //! The scene file: every key matters, transforms compose as documented, nested models flatten, and all
 //! scenes of the repository load cleanly. What wrong files get is in `scene_file_errors.rs`.
 
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may unwrap, and so may its helpers")]
+
 use glint::error::Result;
 use glint::load::load_scene;
 use glint::math::{DAffine3, DVec3, Rgb};

@@ -1,5 +1,7 @@
 //! What wrong scene files get: an error with the right line, the line itself, and advice.
 
+#![expect(clippy::unwrap_used, clippy::panic, reason = "a test may unwrap, and so may its helpers")]
+
 use crate::scene_file::{Folder, every_key};
 use glint::error::Error;
 use glint::load::load_scene;
