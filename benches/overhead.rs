@@ -11,6 +11,7 @@ use glint::error::Result;
 use glint::film::Region;
 use glint::filter::{Filter, FilterSampler};
 use glint::geometry::{Hit, PrimitiveId, Ray};
+use glint::ledger::{Ledger, Stage};
 use glint::load::load_scene;
 use glint::math::{DVec3, Rgb};
 use glint::render::{RenderJob, render};
@@ -153,6 +154,7 @@ fn measure(path: &Path) -> Result<()> {
     };
     // [threads - 1][render, Embree alone, Embree with our hit records]
     let mut seconds = [[const { Vec::new() }; 3], [const { Vec::new() }; 3]];
+    print_stages(&render(&tracer, &job(1), &|_| ())?.ledger);
     for _ in 0..REPETITIONS {
         for threads in [1, 2] {
             let row: &mut [Vec<f64>; 3] = &mut seconds[threads - 1];
@@ -182,6 +184,17 @@ fn measure(path: &Path) -> Result<()> {
         scaling[0], scaling[1]
     ));
     Ok(())
+}
+
+/// Where one thread's time goes, by the ledger: nanoseconds a ray of any kind, and a path or ray of the stage.
+fn print_stages(ledger: &Ledger) {
+    let rays = ledger.rays() as f64;
+    for stage in Stage::ALL {
+        let cost = ledger.stage(stage);
+        let nanoseconds = 1e9 * cost.seconds;
+        let (per_ray, per_item) = (nanoseconds / rays, nanoseconds / cost.items.max(1) as f64);
+        print_row(&format!("  {:14} {per_ray:6.1} ns a ray, {per_item:6.1} an item", stage.name()));
+    }
 }
 
 #[allow(clippy::print_stdout, reason = "a benchmark reports on the terminal")]

@@ -7,13 +7,14 @@
 //! are at halves, and a filter may ask beyond the edges.
 
 mod framing;
+mod lanes;
 mod orthographic;
 mod panoramic;
-
 mod perspective;
 mod view;
 
 pub use framing::{frame, frame_points};
+pub use lanes::CameraRays;
 pub use view::View;
 
 use crate::error::Result;

@@ -28,7 +28,7 @@ impl Orthographic {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn ray(&self, basis: &Basis, film: [f32; 2]) -> CameraRay {
         let x = (film[0] - self.center[0]) * self.pixel;
         let y = (self.center[1] - film[1]) * self.pixel;

@@ -28,7 +28,7 @@ impl Panoramic {
         Ok(Self { width: width as f32, height: height as f32, solid_angle: solid_angle as f32 })
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn ray(&self, basis: &Basis, [x, y]: [f32; 2]) -> CameraRay {
         // Beyond the left and right edges the panorama goes on around; beyond a pole, on its other side.
         let (sin_azimuth, cos_azimuth) = fun::sin_cos_turns(x / self.width - 0.5);

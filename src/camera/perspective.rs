@@ -7,6 +7,7 @@ use super::CameraRay;
 use super::view::{Basis, checked_size};
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
+use crate::math::Vec3;
 use crate::math::fun::double;
 use crate::sampling::warp;
 
@@ -60,24 +61,48 @@ impl Perspective {
         self.lens_radius > 0.0
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn ray(&self, basis: &Basis, film: [f32; 2], lens: [f32; 2]) -> CameraRay {
-        // On the plane at distance 1.
+        match self.has_lens() {
+            true => self.ray_through_lens(basis, film, lens),
+            false => self.ray_of_pinhole(basis, film),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn ray_of_pinhole(&self, basis: &Basis, film: [f32; 2]) -> CameraRay {
+        let direction = self.through(basis, film).normalize();
+        let spread = self.spread(basis, direction);
+        CameraRay { ray: Ray::new(basis.origin, direction), spread, initial_width: 0.0 }
+    }
+
+    #[inline(always)]
+    pub(super) fn ray_through_lens(
+        &self,
+        basis: &Basis,
+        film: [f32; 2],
+        lens: [f32; 2],
+    ) -> CameraRay {
+        let through = self.through(basis, film);
+        let p = warp::disc(lens) * self.lens_radius;
+        let offset = basis.right * p.x + basis.up * p.y;
+        let direction = (through * self.focus_distance - offset).normalize();
+        let spread = self.spread(basis, through.normalize());
+        CameraRay { ray: Ray::new(basis.origin + offset, direction), spread, initial_width: 0.0 }
+    }
+
+    /// The film position on the plane at distance 1, from the centre of the lens.
+    #[inline(always)]
+    fn through(&self, basis: &Basis, film: [f32; 2]) -> Vec3 {
         let x = (film[0] - self.center[0]) * self.pixel;
         let y = (self.center[1] - film[1]) * self.pixel;
-        let through = basis.right * x + basis.up * y + basis.forward;
-        let pinhole = through.normalize();
-        let ray = if self.has_lens() {
-            let p = warp::disc(lens) * self.lens_radius;
-            let offset = basis.right * p.x + basis.up * p.y;
-            let direction = through * self.focus_distance - offset;
-            Ray::new(basis.origin + offset, direction.normalize())
-        } else {
-            Ray::new(basis.origin, pinhole)
-        };
-        // A pixel's solid angle is its area times cos^3, as its distance is 1 / cos.
-        let cos_theta = pinhole.dot(basis.forward).max(0.0);
-        let spread = self.pixel * cos_theta * cos_theta.sqrt();
-        CameraRay { ray, spread, initial_width: 0.0 }
+        basis.right * x + basis.up * y + basis.forward
+    }
+
+    /// A pixel's solid angle is its area times cos^3, as its distance is 1 / cos.
+    #[inline(always)]
+    fn spread(&self, basis: &Basis, direction: Vec3) -> f32 {
+        let cos_theta = direction.dot(basis.forward).max(0.0);
+        self.pixel * cos_theta * cos_theta.sqrt()
     }
 }

@@ -3,7 +3,7 @@
 //! Every filter is a product f(x) f(y), zero beyond a radius; [`FilterSampler`] draws positions from it, so
 //! that a sample counts for one pixel only. Knows nothing of films or cameras.
 
-mod inverse;
+mod quantiles;
 mod sampler;
 
 pub use sampler::FilterSampler;

@@ -4,8 +4,7 @@
 //! Weights are never renormalised, so a pixel is an unbiased estimate of the filtered image.
 
 use super::Filter;
-use super::inverse::InverseTable;
-use crate::math::ONE_MINUS_EPSILON;
+use super::quantiles::{SHARES, quantiles};
 
 /// Draws positions with density |f(x) f(y)| / c and gives them the weight +c or -c, the sign of f(x) f(y),
 /// where f is normalised and c = (integral of |f|)^2, so that the expected weight is 1.
@@ -18,19 +17,39 @@ use crate::math::ONE_MINUS_EPSILON;
 #[derive(Clone, Debug)]
 pub struct FilterSampler {
     radius: f32,
-    positive: InverseTable,
-    negative: InverseTable,
-    /// Where the choices of the first number end, except the last, which ends at 1.
-    ends: [f32; 3],
+    /// Quantiles of the positive part in the first half, of the negative one from [`NEGATIVE`] on.
+    table: Box<[f32; TABLE]>,
+    /// What the first number may choose, in order. A filter without negative part has the last one only.
+    choices: [Choice; 4],
     weight: f32,
 }
 
+/// One product of two parts.
+#[derive(Clone, Copy, Debug, Default)]
+struct Choice {
+    /// Where it begins in the first number; it ends where the next one begins.
+    start: f32,
+    /// Stretches the first number from its own range to the table's.
+    scale: f32,
+    /// Where the table of x begins.
+    x: u32,
+    /// Where the table of y begins.
+    y: u32,
+    /// Of the choice's samples.
+    weight: f32,
+}
+
+/// A power of two, so that an index is cut to it and needs no check.
+const TABLE: usize = 4 * SHARES;
+const NEGATIVE: usize = 2 * SHARES;
+const _: () = assert!(TABLE.is_power_of_two() && SHARES < NEGATIVE);
+
 impl FilterSampler {
-    /// Tabulates `filter`: f becomes constant in each of 1024 cells along an axis, where it has the mean of
-    /// the filter. Densities and weights are those of the table, so they agree exactly.
+    /// Tabulates `filter`: f takes its mean over each of 8192 cells along an axis, of whose distribution the
+    /// table holds the quantiles.
     pub fn new(filter: Filter) -> Self {
-        const CELLS: usize = 1024;
-        const POINTS: usize = 8;
+        const CELLS: usize = 8192;
+        const POINTS: usize = 4;
         let spacing = 2.0 * f64::from(filter.radius) / (CELLS * POINTS) as f64;
         let position = |i: usize| (i as f64 + 0.5) * spacing - f64::from(filter.radius);
         let mean = |cell: usize| {
@@ -39,19 +58,29 @@ impl FilterSampler {
         let values: Vec<f64> = (0..CELLS).map(mean).collect();
         let positive: Vec<f64> = values.iter().map(|v| v.max(0.0)).collect();
         let negative: Vec<f64> = values.iter().map(|v| (-v).max(0.0)).collect();
+        let mut table = Box::new([0.0; TABLE]);
+        table[..=SHARES].copy_from_slice(&quantiles(&positive));
+        table[NEGATIVE..=NEGATIVE + SHARES].copy_from_slice(&quantiles(&negative));
 
         let (p, n): (f64, f64) = (positive.iter().sum(), negative.iter().sum());
         let (p, n) = (p / (p + n), n / (p + n));
         // Along one axis (integral of |f|) / (integral of f) = 1 / (p - n).
         let weight = (1.0 / ((p - n) * (p - n))) as f32;
-        let ends = [n * p, 2.0 * n * p, 2.0 * n * p + n * n].map(|end| end as f32);
-        Self {
-            radius: filter.radius,
-            positive: InverseTable::new(&positive),
-            negative: InverseTable::new(&negative),
-            ends,
-            weight,
-        }
+        let (positive, negative) = (0, NEGATIVE as u32);
+        let mut start = 0.0;
+        let choices = [
+            (n * p, negative, positive, -weight),
+            (p * n, positive, negative, -weight),
+            (n * n, negative, negative, weight),
+            (p * p, positive, positive, weight),
+        ]
+        .map(|(probability, x, y, weight)| {
+            let scale = (SHARES as f64 / probability) as f32;
+            let choice = Choice { start: start as f32, scale, x, y, weight };
+            start += probability;
+            choice
+        });
+        Self { radius: filter.radius, table, choices, weight }
     }
 
     /// The size of every weight, at least 1. Its square is the factor by which the filter's negative lobes
@@ -61,21 +90,34 @@ impl FilterSampler {
     }
 
     /// (offset from the pixel's centre in pixels, within the radius; weight) for `u` in [0, 1)^2, which is
-    /// best the sampler's film dimension.
-    #[inline]
+    /// best the sampler's film dimension. Without branches, so that a loop over it can be vectorised.
+    #[inline(always)]
     pub fn sample(&self, [u, v]: [f32; 2]) -> ([f32; 2], f32) {
-        let [end_np, end_pn, end_nn] = self.ends;
-        let (start, end, x, y, weight) = if u >= end_nn {
-            (end_nn, 1.0, &self.positive, &self.positive, self.weight)
-        } else if u >= end_pn {
-            (end_pn, end_nn, &self.negative, &self.negative, self.weight)
-        } else if u >= end_np {
-            (end_np, end_pn, &self.positive, &self.negative, -self.weight)
-        } else {
-            (0.0, end_np, &self.negative, &self.positive, -self.weight)
-        };
-        let u = ((u - start) / (end - start)).min(ONE_MINUS_EPSILON);
-        let offset = |part: &InverseTable, u| (2.0 * part.sample(u) - 1.0) * self.radius;
-        ([offset(x, u), offset(y, v)], weight)
+        let [first, rest @ ..] = self.choices;
+        let choice = rest.iter().fold(first, |chosen, next| {
+            let take = u >= next.start;
+            Choice {
+                start: if take { next.start } else { chosen.start },
+                scale: if take { next.scale } else { chosen.scale },
+                x: if take { next.x } else { chosen.x },
+                y: if take { next.y } else { chosen.y },
+                weight: if take { next.weight } else { chosen.weight },
+            }
+        });
+        let x = self.quantile(choice.x, (u - choice.start) * choice.scale);
+        let y = self.quantile(choice.y, v * SHARES as f32);
+        ([x, y], choice.weight)
+    }
+
+    /// The offset at `place`, in [0, [`SHARES`]] but for rounding, of the table that begins at `base`.
+    #[inline(always)]
+    fn quantile(&self, base: u32, place: f32) -> f32 {
+        // The last share goes on to its end where the stretched number rounds up.
+        let share = (place as i32).clamp(0, SHARES as i32 - 1);
+        let within = place - share as f32;
+        let i = base as usize + share as usize;
+        let [low, high] = [self.table[i % TABLE], self.table[(i + 1) % TABLE]];
+        let position = (low + (high - low) * within).clamp(0.0, 1.0);
+        (2.0 * position - 1.0) * self.radius
     }
 }

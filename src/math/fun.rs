@@ -16,15 +16,16 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, LN_2, LOG2_E, PI};
 /// Adding and subtracting it rounds an `f64` below 2^51 to the nearest integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-#[inline]
+#[inline(always)]
 fn round(x: f64) -> f64 {
     (x + ROUND) - ROUND
 }
 
 /// sin and cos of `quarters` quarter turns, |quarters| < 2^50.
-#[inline]
+#[inline(always)]
 fn sin_cos_quarters(quarters: f64) -> (f64, f64) {
-    let k = round(quarters);
+    let rounded = quarters + ROUND;
+    let k = rounded - ROUND;
     // |x| <= pi/4: Taylor to degree 13, truncation below 2e-12.
     let x = (quarters - k) * FRAC_PI_2;
     let x2 = x * x;
@@ -41,7 +42,8 @@ fn sin_cos_quarters(quarters: f64) -> (f64, f64) {
                         + x2 * (-1.0 / 3_628_800.0 + x2 * (1.0 / 479_001_600.0))))));
     // Odd quadrants swap the two, and bits of the quadrant are their signs: by masks, because the
     // quadrant of a random angle is a branch that no predictor learns.
-    let quadrant = k as i64 as u64;
+    // (The lowest bits of `rounded` are those of k.)
+    let quadrant = rounded.to_bits();
     let (sin, cos) = (sin.to_bits(), cos.to_bits());
     let swap = (sin ^ cos) & (quadrant & 1).wrapping_neg();
     let sin_sign = (quadrant & 2) << 62;
@@ -51,7 +53,7 @@ fn sin_cos_quarters(quarters: f64) -> (f64, f64) {
 
 /// (sin, cos) of `x` eighth turns (pi/4 each), |x| <= 1: no range reduction. Taylor in `f32`; the error is
 /// below 1.5 units in the last place.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_eighth(x: f32) -> (f32, f32) {
     let x = x * std::f32::consts::FRAC_PI_4;
     let x2 = x * x;
@@ -66,14 +68,14 @@ pub fn sin_cos_eighth(x: f32) -> (f32, f32) {
 }
 
 /// (sin, cos) of `turns` full turns (2 pi each): the range reduction is exact.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
     let (s, c) = sin_cos_quarters(f64::from(turns) * 4.0);
     (s as f32, c as f32)
 }
 
 /// (sin, cos) of an angle in radians, |x| < 1e8.
-#[inline]
+#[inline(always)]
 pub fn sin_cos(x: f32) -> (f32, f32) {
     let (s, c) = sin_cos_quarters(f64::from(x) * (1.0 / FRAC_PI_2));
     (s as f32, c as f32)

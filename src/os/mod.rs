@@ -1,7 +1,11 @@
-//! What only the operating system knows: the memory that this process has used.
+//! What only the operating system and the processor know: memory used, instruction sets.
 //!
 //! One of the three places where `unsafe` is allowed. Knows nothing of rendering.
 #![allow(unsafe_code)]
+
+mod isa;
+
+pub use isa::{Isa, Kernel};
 
 /// The most memory that this process has had resident, in bytes; 0 where the system does not say.
 pub fn peak_rss_bytes() -> u64 {

@@ -36,7 +36,7 @@ pub enum Dimension {
 
 impl Dimension {
     /// A number that no other dimension has.
-    #[inline]
+    #[inline(always)]
     pub const fn index(self) -> u32 {
         const PER_BOUNCE: u32 = 8;
         match self {

@@ -6,6 +6,7 @@
 mod alias;
 mod dimension;
 pub mod hash;
+mod lanes;
 mod piecewise;
 mod rng;
 mod sampler;
@@ -14,6 +15,7 @@ pub mod warp;
 
 pub use alias::AliasTable;
 pub use dimension::Dimension;
+pub use lanes::PathSamplers;
 pub use piecewise::{PiecewiseConstant1d, PiecewiseConstant2d};
 pub use rng::CounterRng;
 pub use sampler::{PathSampler, REPLICATES, Sampler, SamplerKind};

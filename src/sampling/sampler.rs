@@ -29,7 +29,7 @@ impl SamplerKind {
 /// A strategy and its seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
-    kind: SamplerKind,
+    pub(super) kind: SamplerKind,
     seed: u64,
 }
 
@@ -40,7 +40,7 @@ impl Sampler {
     }
 
     /// The numbers of sample `sample` of pixel (x, y).
-    #[inline]
+    #[inline(always)]
     pub fn path(&self, x: u32, y: u32, sample: u64) -> PathSampler {
         let replicate = sample % REPLICATES as u64;
         let index = sample / REPLICATES as u64;
@@ -54,14 +54,14 @@ impl Sampler {
 /// The numbers of one path: a pure function of [`Dimension`].
 #[derive(Clone, Copy, Debug)]
 pub struct PathSampler {
-    key: u64,
-    index: u32,
-    kind: SamplerKind,
+    pub(super) key: u64,
+    pub(super) index: u32,
+    pub(super) kind: SamplerKind,
 }
 
 impl PathSampler {
     /// One number in [0, 1).
-    #[inline]
+    #[inline(always)]
     pub fn one(&self, dimension: Dimension) -> f32 {
         let seed = self.dimension_seed(dimension);
         unit_f32(match self.kind {
@@ -71,34 +71,32 @@ impl PathSampler {
     }
 
     /// Two numbers in [0, 1), stratified together where the strategy stratifies.
-    #[inline]
+    #[inline(always)]
     pub fn two(&self, dimension: Dimension) -> [f32; 2] {
         let seed = self.dimension_seed(dimension);
-        match self.kind {
-            SamplerKind::Sobol => {
-                let (x, y) = owen_sobol_2d(self.index, seed);
-                [unit_f32(x), unit_f32(y)]
-            }
+        let (x, y) = match self.kind {
+            SamplerKind::Sobol => owen_sobol_2d(self.index, seed),
             SamplerKind::Independent => {
                 let bits = self.independent(seed);
-                [unit_f32((bits >> 32) as u32), unit_f32(bits as u32)]
+                ((bits >> 32) as u32, bits as u32)
             }
-        }
+        };
+        [unit_f32(x), unit_f32(y)]
     }
 
     /// What hit filters know a ray of this path by: a hash of the path, the vertex and the kind of ray.
-    #[inline]
+    #[inline(always)]
     pub fn ray_id(&self, bounce: u32, kind: u32) -> u32 {
         let path = self.key ^ u64::from(self.index);
         (combine(path, u64::from(bounce) << 8 | u64::from(kind) | 1 << 63) >> 32) as u32
     }
 
-    #[inline]
+    #[inline(always)]
     fn dimension_seed(&self, dimension: Dimension) -> u64 {
         combine(self.key, u64::from(dimension.index()))
     }
 
-    #[inline]
+    #[inline(always)]
     fn independent(&self, seed: u64) -> u64 {
         combine(seed, u64::from(self.index))
     }

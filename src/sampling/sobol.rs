@@ -7,7 +7,7 @@
 
 /// Hash in which bit i of the result depends only on bits 0..=i of `x`: a nested uniform (Owen)
 /// scramble of the bit-reversed value.
-#[inline]
+#[inline(always)]
 const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
@@ -17,7 +17,7 @@ const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
 }
 
 /// The second Sobol dimension of `index`, with its bits reversed.
-#[inline]
+#[inline(always)]
 const fn pascal_reversed(mut x: u32) -> u32 {
     x ^= (x & 0xaaaa_aaaa) >> 1;
     x ^= (x & 0xcccc_cccc) >> 2;
@@ -28,7 +28,7 @@ const fn pascal_reversed(mut x: u32) -> u32 {
 
 /// Point `index` of an Owen-scrambled (0,2)-sequence in base 2, as 32-bit fractions; the order of the
 /// points is Owen-shuffled too, so that sequences with different seeds can be padded together.
-#[inline]
+#[inline(always)]
 pub(super) const fn owen_sobol_2d(index: u32, seed: u64) -> (u32, u32) {
     let seed_order = seed as u32;
     let seed_x = (seed >> 32) as u32;
@@ -42,7 +42,7 @@ pub(super) const fn owen_sobol_2d(index: u32, seed: u64) -> (u32, u32) {
 }
 
 /// As [`owen_sobol_2d`], the first coordinate alone.
-#[inline]
+#[inline(always)]
 pub(super) const fn owen_sobol_1d(index: u32, seed: u64) -> u32 {
     let index = scramble_reversed(index.reverse_bits(), seed as u32).reverse_bits();
     scramble_reversed(index, (seed >> 32) as u32).reverse_bits()

@@ -8,7 +8,7 @@ use crate::math::{Vec2, Vec3, fun};
 use std::f32::consts::{FRAC_1_PI, PI};
 
 /// Uniform point on the unit disc (concentric map).
-#[inline]
+#[inline(always)]
 pub fn disc([u, v]: [f32; 2]) -> Vec2 {
     let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
     // In each quarter the angle from the nearer axis is an eighth turn times the ratio of the
@@ -22,20 +22,20 @@ pub fn disc([u, v]: [f32; 2]) -> Vec2 {
 }
 
 /// Cosine-weighted direction around +z; its density is [`cosine_hemisphere_pdf`].
-#[inline]
+#[inline(always)]
 pub fn cosine_hemisphere(u: [f32; 2]) -> Vec3 {
     let p = disc(u);
     Vec3::new(p.x, p.y, (1.0 - p.length_squared()).max(0.0).sqrt())
 }
 
 /// Density of [`cosine_hemisphere`] per solid angle.
-#[inline]
+#[inline(always)]
 pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
     cos_theta.max(0.0) * FRAC_1_PI
 }
 
 /// Uniform direction on the sphere; density 1 / (4 pi).
-#[inline]
+#[inline(always)]
 pub fn sphere([u, v]: [f32; 2]) -> Vec3 {
     let z = 1.0 - 2.0 * u;
     let r = (1.0 - z * z).max(0.0).sqrt();
@@ -45,7 +45,7 @@ pub fn sphere([u, v]: [f32; 2]) -> Vec3 {
 
 /// Uniform direction in the cone around +z whose half-angle has `one_minus_cos = 1 - cos`; density
 /// [`cone_pdf`]. The argument keeps its digits for cones as narrow as the sun's.
-#[inline]
+#[inline(always)]
 pub fn cone([u, v]: [f32; 2], one_minus_cos: f32) -> Vec3 {
     let h = u * one_minus_cos;
     // sin^2 = (1 - cos)(1 + cos) = h (2 - h)
@@ -55,7 +55,7 @@ pub fn cone([u, v]: [f32; 2], one_minus_cos: f32) -> Vec3 {
 }
 
 /// Density of [`cone`] per solid angle.
-#[inline]
+#[inline(always)]
 pub fn cone_pdf(one_minus_cos: f32) -> f32 {
     1.0 / (2.0 * PI * one_minus_cos)
 }
@@ -63,7 +63,7 @@ pub fn cone_pdf(one_minus_cos: f32) -> f32 {
 /// Barycentric weights (of the second and third vertex) of a uniform point of a triangle.
 ///
 /// Source: E. Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
-#[inline]
+#[inline(always)]
 pub fn triangle([u, v]: [f32; 2]) -> [f32; 2] {
     if v > u {
         let b1 = 0.5 * u;

@@ -35,13 +35,13 @@ pub fn first_hit<A: Accelerator, F: HitFilter>(
 ) -> Option<FirstHit> {
     let start = tracer.camera_ray(pixel, sample);
     let mut hit = [Hit::MISS];
-    tracer.accelerator.closest(&[start.ray], filter, &mut hit);
+    tracer.accelerator.closest(&[start.camera.ray], filter, &mut hit);
     let [hit] = hit;
     if !hit.is_hit() {
         return None;
     }
-    let at = tracer.world.interact(&start.ray, &hit, start.width + start.spread * hit.t);
-    let wo = at.frame.local_from_world(-start.ray.direction);
+    let at = tracer.world.interact(&start.camera.ray, &hit, start.camera.initial_width + start.camera.spread * hit.t);
+    let wo = at.frame.local_from_world(-start.camera.ray.direction);
     Some(FirstHit {
         depth: hit.t,
         point: at.point,

@@ -4,6 +4,7 @@
 //! The order in which they come out means nothing: the film adds them exactly.
 
 mod path;
+mod generate_stage;
 mod group;
 mod light_stage;
 mod scatter_stage;
@@ -16,7 +17,7 @@ pub use wavefront::Wavefront;
 
 use crate::accel::Accelerator;
 use crate::bsdf::Bsdf;
-use crate::camera::Camera;
+use crate::camera::{Camera, CameraRay};
 use crate::filter::FilterSampler;
 use crate::geometry::PrimitiveId;
 use crate::math::{Rgb, Vec3};
@@ -62,13 +63,42 @@ impl Block {
     }
 
     /// Pixel and sample of every path: all samples of a pixel, then the next pixel.
-    #[inline]
-    pub fn iter(&self) -> impl Iterator<Item = ([u32; 2], u64)> + use<> {
+    pub fn iter(&self) -> BlockPaths {
         let Self { start, end, first_sample, end_sample } = *self;
-        (start[1]..end[1]).flat_map(move |y| {
-            (start[0]..end[0])
-                .flat_map(move |x| (first_sample..end_sample).map(move |sample| ([x, y], sample)))
-        })
+        let is_empty = start[0] >= end[0] || first_sample >= end_sample;
+        let pixel = if is_empty { end } else { start };
+        BlockPaths { block: *self, pixel, sample: first_sample }
+    }
+}
+
+/// See [`Block::iter`].
+#[derive(Clone, Debug)]
+pub struct BlockPaths {
+    block: Block,
+    /// The next path; its row is past the block's when there is none.
+    pixel: [u32; 2],
+    sample: u64,
+}
+
+impl Iterator for BlockPaths {
+    type Item = ([u32; 2], u64);
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        let Block { start, end, first_sample, end_sample } = self.block;
+        if self.pixel[1] >= end[1] {
+            return None;
+        }
+        let path = (self.pixel, self.sample);
+        self.sample += 1;
+        if self.sample == end_sample {
+            self.sample = first_sample;
+            self.pixel[0] += 1;
+            if self.pixel[0] == end[0] {
+                self.pixel = [start[0], self.pixel[1] + 1];
+            }
+        }
+        Some(path)
     }
 }
 
@@ -91,21 +121,14 @@ pub struct PixelSample {
 
 impl<A: Accelerator> Tracer<'_, A> {
     /// The start of a path: its camera ray with the cone around it, its numbers, its filter weight.
-    #[inline]
     pub(crate) fn camera_ray(&self, pixel: [u32; 2], sample: u64) -> CameraStart {
         let sampler = self.sampler.path(pixel[0], pixel[1], sample);
         let (offset, weight) = self.filter.sample(sampler.two(Dimension::Film));
         let film = [0, 1].map(|k| pixel[k] as f32 + 0.5 + offset[k]);
         let lens = if self.camera.needs_lens() { sampler.two(Dimension::Lens) } else { [0.5; 2] };
-        let mut start = self.camera.ray(film, lens);
-        start.ray.id = self.ray_id(&sampler, 0, RayKind::Path);
-        CameraStart {
-            sampler,
-            weight,
-            ray: start.ray,
-            spread: start.spread,
-            width: start.initial_width,
-        }
+        let mut camera = self.camera.ray(film, lens);
+        camera.ray.id = self.ray_id(&sampler, 0, RayKind::Path);
+        CameraStart { sampler, weight, camera }
     }
 }
 
@@ -132,9 +155,7 @@ struct Vertex {
 pub(crate) struct CameraStart {
     pub(crate) sampler: PathSampler,
     pub(crate) weight: f32,
-    pub(crate) ray: crate::geometry::Ray,
-    pub(crate) spread: f32,
-    pub(crate) width: f32,
+    pub(crate) camera: CameraRay,
 }
 
 /// Kinds of rays, so that a path's rays have different ids for hit filters.

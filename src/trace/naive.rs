@@ -35,10 +35,10 @@ pub fn radiance<A: Accelerator, F: HitFilter>(
         throughput: Rgb::WHITE,
         eta_scale: 1.0,
         pdf: None,
-        cone: [start.width, start.spread],
+        cone: [start.camera.initial_width, start.camera.spread],
         absorption: Rgb::BLACK,
     };
-    incoming(tracer, filter, &start.sampler, start.ray, state) * start.weight
+    incoming(tracer, filter, &start.sampler, start.camera.ray, state) * start.weight
 }
 
 /// Radiance arriving along a ray.

@@ -47,7 +47,7 @@ impl Path {
     #[inline]
     pub(super) fn begin(start: &CameraStart, pixel: [u32; 2], sample: u64) -> Self {
         Self {
-            ray: start.ray,
+            ray: start.camera.ray,
             throughput: Rgb::WHITE,
             radiance: Rgb::BLACK,
             sampler: start.sampler,
@@ -56,8 +56,8 @@ impl Path {
             // No light is sampled for the camera: what it sees counts in full.
             is_delta: true,
             eta_scale: 1.0,
-            cone_width: start.width,
-            cone_spread: start.spread,
+            cone_width: start.camera.initial_width,
+            cone_spread: start.camera.spread,
             absorption: Rgb::BLACK,
             pixel,
             sample,

@@ -9,6 +9,7 @@
 //! change no bit. Source of the estimator: Veach 1997, chapters 9 and 10 (light and BSDF sampling,
 //! combined by the power heuristic).
 
+use super::generate_stage::Starts;
 use super::group::Groups;
 use super::light_stage::LightStage;
 use super::path::Path;
@@ -18,6 +19,7 @@ use crate::accel::{Accelerator, HitFilter};
 use crate::geometry::{Hit, Ray};
 use crate::ledger::{Clock, Ledger, Stage};
 use crate::math::{Rgb, fun};
+use crate::os::Isa;
 use crate::sampling::Dimension;
 
 /// The arrays of one worker. They are allocated once; the bounce loop allocates nothing.
@@ -37,6 +39,7 @@ pub struct Wavefront {
     /// Slots whose path has ended.
     finished: Vec<u32>,
     capacity: usize,
+    isa: Isa,
     /// What the stages have cost so far.
     pub ledger: Ledger,
 }
@@ -61,6 +64,7 @@ impl Wavefront {
             blocked: Vec::with_capacity(capacity),
             finished: Vec::with_capacity(capacity),
             capacity,
+            isa: Isa::detect(),
             ledger: Ledger::default(),
         }
     }
@@ -102,19 +106,25 @@ impl Wavefront {
         clock: &mut Clock,
     ) {
         let before = self.active.len();
-        for (pixel, sample) in starts.take(self.capacity - before) {
-            let path = Path::begin(&tracer.camera_ray(pixel, sample), pixel, sample);
-            let slot = match self.free.pop() {
-                Some(slot) => {
-                    self.slots[slot as usize] = path;
-                    slot
-                }
-                None => {
-                    self.slots.push(path);
-                    self.slots.len() as u32 - 1
-                }
-            };
-            self.active.push(slot);
+        let Self { slots, free, active, .. } = self;
+        loop {
+            let starts = Starts::take(starts, self.capacity - active.len());
+            if starts.count() == 0 {
+                break;
+            }
+            tracer.camera_rays(self.isa, &starts, |path| {
+                let slot = match free.pop() {
+                    Some(slot) => {
+                        slots[slot as usize] = path;
+                        slot
+                    }
+                    None => {
+                        slots.push(path);
+                        slots.len() as u32 - 1
+                    }
+                };
+                active.push(slot);
+            });
         }
         let begun = self.active.len() - before;
         self.ledger.camera_rays += begun as u64;

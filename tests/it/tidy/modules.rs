@@ -27,7 +27,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("plan", "error math sampling ledger scene world"),
     (
         "trace",
-        "error math sampling ledger geometry texture bsdf light camera filter scene accel world plan",
+        "error math sampling ledger os geometry texture bsdf light camera filter scene accel world plan",
     ),
     ("film", "error math sampling image ledger filter"),
     (
