@@ -10,12 +10,12 @@ mod brute;
 pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
+mod resolve;
 
 pub use brute::BruteForce;
+pub use resolve::{resolve, resolve_all};
 
-use crate::geometry::{
-    Geometry, Hit, PrimitiveId, Ray, TriangleHit, intersect_triangle, offset_distance,
-};
+use crate::geometry::{Hit, Ray};
 
 /// Answers batches of rays.
 pub trait Accelerator: Sync {
@@ -55,13 +55,4 @@ pub struct BuildStats {
     pub seconds: f64,
     /// Bytes of nodes and leaves, without the geometry buffers.
     pub bytes: usize,
-}
-
-/// The hit of `ray` on the primitive that a backend named: the same bits for every backend.
-#[inline]
-pub fn resolve(geometry: &Geometry, ray: &Ray, id: PrimitiveId) -> Hit {
-    let (vertices, instance_magnitude) = geometry.world_vertices(id);
-    let TriangleHit { t, u, v, point, normal } = intersect_triangle(ray, &vertices);
-    let offset = offset_distance(point, &vertices, instance_magnitude);
-    Hit { t, u, v, offset, point, normal, id }
 }

@@ -31,7 +31,7 @@ pub struct TriangleHit {
 /// for half a unit in the last place, except for slivers whose height is below 1e-9 of their length.
 /// A triangle seen edge-on or without area, which only a backend's rounding can find, is hit at its
 /// first vertex, and its normal faces the ray if it has none.
-#[inline]
+#[inline(always)]
 pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> TriangleHit {
     let [a, b, c] = *vertices;
     let direction = ray.direction.as_dvec3();
@@ -45,8 +45,8 @@ pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> TriangleHit {
         let inverse = 1.0 / det;
         let q = s.cross(direction);
         t = (s.dot(area_vector) * inverse) as f32;
-        u = ((ac.dot(q) * inverse) as f32).clamp(0.0, 1.0);
-        v = ((-ab.dot(q) * inverse) as f32).clamp(0.0, 1.0 - u);
+        u = ((ac.dot(q) * inverse) as f32).max(0.0).min(1.0);
+        v = ((-ab.dot(q) * inverse) as f32).max(0.0).min(1.0 - u);
     } else {
         t = (-s.dot(direction) / direction.length_squared()) as f32;
         (u, v) = (0.0, 0.0);
@@ -70,7 +70,7 @@ pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> TriangleHit {
 /// product (three operations deep each). Summed over three components and rounded up to the next
 /// power of two: 16 round-offs of |point|, 16 of the extent. `instance_magnitude` adds what a
 /// transformation to object space loses ([`super::Geometry::world_vertices`]).
-#[inline]
+#[inline(always)]
 pub fn offset_distance(point: Vec3, vertices: &[DVec3; 3], instance_magnitude: f32) -> f32 {
     let p = point.as_dvec3();
     let extent = vertices.iter().fold(0.0_f64, |m, x| m.max((*x - p).abs().max_element())) as f32;

@@ -14,6 +14,8 @@ pub(super) struct LightStage<'a, 't, A> {
     pub(super) tracer: &'a Tracer<'t, A>,
     pub(super) vertices: &'a [Vertex],
     pub(super) slots: &'a [Path],
+    /// Where on its light each vertex looks.
+    pub(super) positions: &'a [[f32; 2]],
     pub(super) shadow_rays: &'a mut Vec<Ray>,
     /// Slot, and what the light adds to it if it is visible.
     pub(super) shadow_gains: &'a mut Vec<(u32, Rgb)>,
@@ -35,7 +37,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
                 true => path.sampler.one(Dimension::LightSelect { bounce }),
                 false => 0.0,
             };
-            let position = path.sampler.two(Dimension::LightPosition { bounce });
+            let position = self.positions[i as usize];
             let Some(light) = lights.sample(world, vertex.at.point, select, position) else {
                 continue;
             };

@@ -7,6 +7,7 @@ mod path;
 mod generate_stage;
 mod group;
 mod light_stage;
+mod numbers;
 mod scatter_stage;
 mod wavefront;
 pub mod naive;

@@ -12,6 +12,8 @@ use crate::sampling::Dimension;
 pub(super) struct ScatterStage<'a, 't, A> {
     pub(super) tracer: &'a Tracer<'t, A>,
     pub(super) vertices: &'a [Vertex],
+    /// What each vertex draws its direction from.
+    pub(super) directions: &'a [[f32; 2]],
     pub(super) slots: &'a mut [Path],
     /// Slots of paths that go on.
     pub(super) active: &'a mut Vec<u32>,
@@ -24,7 +26,7 @@ impl<A: Accelerator> GroupStage for ScatterStage<'_, '_, A> {
         for &i in group {
             let vertex = &self.vertices[i as usize];
             let path = &mut self.slots[vertex.slot as usize];
-            let goes_on = scatter(path, vertex, M::of(&vertex.bsdf), self.tracer);
+            let goes_on = scatter(path, vertex, M::of(&vertex.bsdf), self.directions[i as usize], self.tracer);
             let list = if goes_on { &mut *self.active } else { &mut *self.finished };
             list.push(vertex.slot);
         }
@@ -37,6 +39,7 @@ fn scatter<M: Model, A: Accelerator>(
     path: &mut Path,
     vertex: &Vertex,
     model: &M,
+    direction: [f32; 2],
     tracer: &Tracer<'_, A>,
 ) -> bool {
     let bounce = path.bounce;
@@ -44,7 +47,6 @@ fn scatter<M: Model, A: Accelerator>(
         true => path.sampler.one(Dimension::ScatterLobe { bounce }),
         false => 0.0,
     };
-    let direction = path.sampler.two(Dimension::ScatterDirection { bounce });
     let Some(sample) = model.sample(vertex.wo, lobe, direction) else {
         return false;
     };

@@ -12,6 +12,7 @@
 use super::generate_stage::Starts;
 use super::group::Groups;
 use super::light_stage::LightStage;
+use super::numbers::draw_pairs;
 use super::path::Path;
 use super::scatter_stage::ScatterStage;
 use super::{Block, PixelSample, Tracer, Vertex, power_heuristic, survival_probability};
@@ -32,6 +33,8 @@ pub struct Wavefront {
     hits: Vec<Hit>,
     vertices: Vec<Vertex>,
     groups: Groups,
+    /// Random numbers of the vertices, for the stage at hand.
+    pairs: Vec<[f32; 2]>,
     shadow_rays: Vec<Ray>,
     /// Slot, and what the light adds to it if it is visible.
     shadow_gains: Vec<(u32, Rgb)>,
@@ -59,6 +62,7 @@ impl Wavefront {
             hits: Vec::with_capacity(capacity),
             vertices: Vec::with_capacity(capacity),
             groups: Groups::with_capacity(capacity),
+            pairs: Vec::with_capacity(capacity),
             shadow_rays: Vec::with_capacity(capacity),
             shadow_gains: Vec::with_capacity(capacity),
             blocked: Vec::with_capacity(capacity),
@@ -219,10 +223,12 @@ impl Wavefront {
         if tracer.world.lights.is_empty() {
             return;
         }
+        self.draw_pairs(tracer, |bounce| Dimension::LightPosition { bounce });
         self.groups.each(&mut LightStage {
             tracer,
             vertices: &self.vertices,
             slots: &self.slots,
+            positions: &self.pairs,
             shadow_rays: &mut self.shadow_rays,
             shadow_gains: &mut self.shadow_gains,
         });
@@ -253,14 +259,25 @@ impl Wavefront {
     /// Chooses where each path goes on.
     fn scatter<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
         self.active.clear();
+        self.draw_pairs(tracer, |bounce| Dimension::ScatterDirection { bounce });
         self.groups.each(&mut ScatterStage {
             tracer,
             vertices: &self.vertices,
+            directions: &self.pairs,
             slots: &mut self.slots,
             active: &mut self.active,
             finished: &mut self.finished,
         });
         clock.lap(&mut self.ledger, Stage::Scatter, self.vertices.len());
+    }
+
+    fn draw_pairs<A>(
+        &mut self,
+        tracer: &Tracer<'_, A>,
+        dimension: impl Fn(u32) -> Dimension + Copy,
+    ) {
+        let vertices = (&*self.vertices, &*self.slots);
+        draw_pairs(self.isa, &tracer.sampler, vertices, dimension, &mut self.pairs);
     }
 
     /// Ends dim paths at random, and gives the survivors the energy of those that ended.

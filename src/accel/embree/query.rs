@@ -2,7 +2,7 @@
 
 use super::scene::EmbreeScene;
 use super::sys;
-use crate::accel::{AcceptAll, HitFilter, resolve};
+use crate::accel::{AcceptAll, HitFilter, resolve, resolve_all};
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use std::ffi::{c_int, c_uint, c_void};
 
@@ -63,10 +63,7 @@ pub(super) fn closest<F: HitFilter>(
     let mut ids = [PrimitiveId::MISS; CHUNK];
     for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
         closest_chunk(scene, geometry, rays, filter, &mut ids);
-        // A loop of its own: the vertex fetches of neighbouring hits overlap.
-        for ((ray, id), hit) in rays.iter().zip(ids).zip(hits) {
-            *hit = if id == PrimitiveId::MISS { Hit::MISS } else { resolve(geometry, ray, id) };
-        }
+        resolve_all(geometry, rays, &ids[..rays.len()], hits);
     }
 }
 
