@@ -25,7 +25,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 const SIZE: [u32; 2] = [640, 360];
-const SAMPLES: u64 = 8;
+const SAMPLES: u64 = 16;
 const REPETITIONS: usize = 7;
 
 /// A batch of rays as the render traced it.

@@ -28,24 +28,21 @@ impl<const N: usize> CameraRays<N> {
         }
     }
 
+    const ZERO: Self = Self {
+        origin: [[0.0; N]; 3],
+        direction: [[0.0; N]; 3],
+        spread: [0.0; N],
+        initial_width: [0.0; N],
+    };
+
     #[inline(always)]
-    fn of(ray: impl Fn(usize) -> CameraRay) -> Self {
-        let mut rays = Self {
-            origin: [[0.0; N]; 3],
-            direction: [[0.0; N]; 3],
-            spread: [0.0; N],
-            initial_width: [0.0; N],
-        };
-        for i in 0..N {
-            let CameraRay { ray, spread, initial_width } = ray(i);
-            for k in 0..3 {
-                rays.origin[k][i] = ray.origin[k];
-                rays.direction[k][i] = ray.direction[k];
-            }
-            rays.spread[i] = spread;
-            rays.initial_width[i] = initial_width;
+    fn set(&mut self, i: usize, CameraRay { ray, spread, initial_width }: CameraRay) {
+        for k in 0..3 {
+            self.origin[k][i] = ray.origin[k];
+            self.direction[k][i] = ray.direction[k];
         }
-        rays
+        self.spread[i] = spread;
+        self.initial_width[i] = initial_width;
     }
 }
 
@@ -57,19 +54,27 @@ impl Camera {
         [film_x, film_y]: &[[f32; N]; 2],
         [lens_x, lens_y]: &[[f32; N]; 2],
     ) -> CameraRays<N> {
-        // The projection is chosen outside the loop, so that each loop is straight.
-        let basis = self.basis;
+        let basis = &self.basis;
+        let mut rays = CameraRays::ZERO;
+        // The projection is chosen outside the loops, so that each is straight. (A macro, because closures
+        // cannot be made to be inlined.)
+        macro_rules! each_lane {
+            ($i:ident => $ray:expr) => {
+                for $i in 0..N {
+                    rays.set($i, $ray);
+                }
+            };
+        }
         match self.projection {
-            Projection::Perspective(p) if p.has_lens() => CameraRays::of(|i| {
-                p.ray_through_lens(&basis, [film_x[i], film_y[i]], [lens_x[i], lens_y[i]])
+            Projection::Perspective(p) if p.has_lens() => each_lane!(i => {
+                p.ray_through_lens(basis, [film_x[i], film_y[i]], [lens_x[i], lens_y[i]])
             }),
             Projection::Perspective(p) => {
-                CameraRays::of(|i| p.ray_of_pinhole(&basis, [film_x[i], film_y[i]]))
+                each_lane!(i => p.ray_of_pinhole(basis, [film_x[i], film_y[i]]));
             }
-            Projection::Orthographic(p) => {
-                CameraRays::of(|i| p.ray(&basis, [film_x[i], film_y[i]]))
-            }
-            Projection::Panoramic(p) => CameraRays::of(|i| p.ray(&basis, [film_x[i], film_y[i]])),
+            Projection::Orthographic(p) => each_lane!(i => p.ray(basis, [film_x[i], film_y[i]])),
+            Projection::Panoramic(p) => each_lane!(i => p.ray(basis, [film_x[i], film_y[i]])),
         }
+        rays
     }
 }

@@ -14,24 +14,26 @@ impl Fixed {
     #[inline]
     pub(super) fn from_f32(value: f32) -> Self {
         // value = mantissa 2^(exponent - 150): shift the mantissa to its place on the grid of 2^-64.
-        // (Subnormals have no hidden bit, and vanish anyway.)
+        // (Subnormals have no hidden bit, and vanish anyway.) Without branches: zeros and ones, small and
+        // large numbers follow each other at random.
         let bits = value.to_bits();
         let exponent = (bits >> 23 & 0xff) as i32;
-        let mantissa = i128::from(bits & 0x007f_ffff | 0x0080_0000);
+        let mantissa = bits & 0x007f_ffff | 0x0080_0000;
         let shift = exponent - 150 + 64;
-        let magnitude = match shift {
-            LARGEST_SHIFT.. => LARGEST,
-            0.. => mantissa << shift,
-            -24.. => mantissa >> -shift,
-            _ => 0,
-        };
-        Self(if bits >> 31 == 0 { magnitude } else { -magnitude })
+        let left = shift.clamp(0, LARGEST_SHIFT);
+        let right = (-shift).clamp(0, 31);
+        let magnitude = i128::from(mantissa >> right) << left;
+        let sign = i128::from(bits as i32 >> 31);
+        Self((magnitude ^ sign) - sign)
     }
 
     /// Adds, saturating.
     #[inline]
     pub(super) fn add(&mut self, other: Self) {
-        self.0 = self.0.saturating_add(other.0);
+        self.0 = match self.0.checked_add(other.0) {
+            Some(sum) => sum,
+            None => self.0.saturating_add(other.0),
+        };
     }
 
     /// The nearest `f64`.
@@ -40,10 +42,8 @@ impl Fixed {
     }
 }
 
-/// A quarter of the range: beyond, there would be no room for a sum.
-const LARGEST: i128 = 1 << 125;
-/// Shifts from which on a mantissa of 24 bits exceeds [`LARGEST`].
-const LARGEST_SHIFT: i32 = 102;
+/// The shift of the largest numbers: beyond 2^61 or so, there would be no room for a sum.
+const LARGEST_SHIFT: i32 = 101;
 
 #[cfg(test)]
 mod tests {

@@ -109,15 +109,31 @@ impl FilterSampler {
         ([x, y], choice.weight)
     }
 
+    /// [`FilterSampler::sample`] of `N` numbers at once: offsets and weights.
+    #[inline(always)]
+    pub fn sample_lanes<const N: usize>(
+        &self,
+        [u, v]: &[[f32; N]; 2],
+        [x, y]: &mut [[f32; N]; 2],
+        weights: &mut [f32; N],
+    ) {
+        for i in 0..N {
+            ([x[i], y[i]], weights[i]) = self.sample([u[i], v[i]]);
+        }
+    }
+
     /// The offset at `place`, in [0, [`SHARES`]] but for rounding, of the table that begins at `base`.
     #[inline(always)]
     fn quantile(&self, base: u32, place: f32) -> f32 {
-        // The last share goes on to its end where the stretched number rounds up.
-        let share = (place as i32).clamp(0, SHARES as i32 - 1);
-        let within = place - share as f32;
-        let i = base as usize + share as usize;
+        // Rounds down by adding a number whose last bit counts ones; a whole number may round to the share
+        // before, at whose end it is. The last share goes on to its end where `place` has rounded up.
+        const ONES: f32 = 8_388_608.0;
+        let rounded = (place - 0.5).max(0.0).min((SHARES - 1) as f32) + ONES;
+        let share = rounded.to_bits() - ONES.to_bits();
+        let within = place - (rounded - ONES);
+        let i = (base + share) as usize;
         let [low, high] = [self.table[i % TABLE], self.table[(i + 1) % TABLE]];
-        let position = (low + (high - low) * within).clamp(0.0, 1.0);
+        let position = (low + (high - low) * within).max(0.0).min(1.0);
         (2.0 * position - 1.0) * self.radius
     }
 }

@@ -56,14 +56,13 @@ impl<A: Accelerator> Kernel for CameraKernel<'_, '_, A> {
     fn run(self) {
         let Self { tracer, starts: Starts { pixels, samples, .. }, lanes } = self;
         let numbers = PathSamplers::begin(&tracer.sampler, pixels, samples);
-        let [u, v] = numbers.two(|_| Dimension::Film);
         let mut film = [[0.0; LANES]; 2];
         let mut weights = [0.0; LANES];
-        for i in 0..LANES {
-            let (offset, weight) = tracer.filter.sample([u[i], v[i]]);
-            film[0][i] = pixels[0][i] as f32 + 0.5 + offset[0];
-            film[1][i] = pixels[1][i] as f32 + 0.5 + offset[1];
-            weights[i] = weight;
+        tracer.filter.sample_lanes(&numbers.two(|_| Dimension::Film), &mut film, &mut weights);
+        for (film, pixels) in film.iter_mut().zip(pixels) {
+            for (film, &pixel) in film.iter_mut().zip(pixels) {
+                *film += pixel as f32 + 0.5;
+            }
         }
         let lens = match tracer.camera.needs_lens() {
             true => numbers.two(|_| Dimension::Lens),

@@ -125,7 +125,7 @@ impl<A: Accelerator> Tracer<'_, A> {
     pub(crate) fn camera_ray(&self, pixel: [u32; 2], sample: u64) -> CameraStart {
         let sampler = self.sampler.path(pixel[0], pixel[1], sample);
         let (offset, weight) = self.filter.sample(sampler.two(Dimension::Film));
-        let film = [0, 1].map(|k| pixel[k] as f32 + 0.5 + offset[k]);
+        let film = [0, 1].map(|k| offset[k] + (pixel[k] as f32 + 0.5));
         let lens = if self.camera.needs_lens() { sampler.two(Dimension::Lens) } else { [0.5; 2] };
         let mut camera = self.camera.ray(film, lens);
         camera.ray.id = self.ray_id(&sampler, 0, RayKind::Path);
