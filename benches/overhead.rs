@@ -154,15 +154,20 @@ fn measure(path: &Path) -> Result<()> {
     };
     // [threads - 1][render, Embree alone, Embree with our hit records]
     let mut seconds = [[const { Vec::new() }; 3], [const { Vec::new() }; 3]];
-    print_stages(&render(&tracer, &job(1), &|_| ())?.ledger);
+    let mut ledgers = Vec::new();
     for _ in 0..REPETITIONS {
         for threads in [1, 2] {
             let row: &mut [Vec<f64>; 3] = &mut seconds[threads - 1];
-            row[0].push(render(&tracer, &job(threads), &|_| ())?.seconds);
+            let rendered = render(&tracer, &job(threads), &|_| ())?;
+            row[0].push(rendered.seconds);
+            if threads == 1 {
+                ledgers.push(rendered.ledger);
+            }
             row[1].push(replay(&embree, &batches, threads, true));
             row[2].push(replay(&embree, &batches, threads, false));
         }
     }
+    print_stages(&ledgers);
     let medians = seconds.map(|row| row.map(median));
     let speed = |s: f64| rays as f64 / s / 1e6;
     let name = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
@@ -186,13 +191,15 @@ fn measure(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Where one thread's time goes, by the ledger: nanoseconds a ray of any kind, and a path or ray of the stage.
-fn print_stages(ledger: &Ledger) {
-    let rays = ledger.rays() as f64;
+/// Where one thread's time goes, by the ledgers of several renders: median nanoseconds a ray of any kind, and
+/// an item (path or ray) of the stage.
+fn print_stages(ledgers: &[Ledger]) {
     for stage in Stage::ALL {
-        let cost = ledger.stage(stage);
-        let nanoseconds = 1e9 * cost.seconds;
-        let (per_ray, per_item) = (nanoseconds / rays, nanoseconds / cost.items.max(1) as f64);
+        let per = |items: fn(&Ledger, Stage) -> u64| {
+            let cost = |l: &Ledger| 1e9 * l.stage(stage).seconds / items(l, stage).max(1) as f64;
+            median(ledgers.iter().map(cost).collect())
+        };
+        let (per_ray, per_item) = (per(|l, _| l.rays()), per(|l, s| l.stage(s).items));
         print_row(&format!("  {:14} {per_ray:6.1} ns a ray, {per_item:6.1} an item", stage.name()));
     }
 }

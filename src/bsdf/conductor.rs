@@ -72,6 +72,8 @@ impl Conductor {
 }
 
 impl Scatter for Conductor {
+    const HAS_LOBES: bool = true;
+
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         match &self.ggx {

@@ -61,6 +61,8 @@ pub(super) fn reflection_probability(reflectance: f32, transmittance: Rgb) -> f3
 }
 
 impl Scatter for Dielectric {
+    const HAS_LOBES: bool = true;
+
     #[inline]
     fn evaluate(&self, _wo: Vec3, _wi: Vec3) -> BsdfValue {
         BsdfValue::ZERO

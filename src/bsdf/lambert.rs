@@ -19,6 +19,8 @@ impl Lambert {
 }
 
 impl Scatter for Lambert {
+    const HAS_LOBES: bool = false;
+
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if wo.z <= 0.0 || wi.z <= 0.0 {

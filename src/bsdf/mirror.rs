@@ -18,6 +18,8 @@ impl Mirror {
 }
 
 impl Scatter for Mirror {
+    const HAS_LOBES: bool = false;
+
     #[inline]
     fn evaluate(&self, _wo: Vec3, _wi: Vec3) -> BsdfValue {
         BsdfValue::ZERO

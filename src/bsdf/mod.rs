@@ -39,6 +39,9 @@ pub use rough_dielectric::RoughDielectric;
 
 /// What a model does with light. Never panics; a degenerate argument (`wo.z <= 0`) scatters nothing.
 pub trait Scatter {
+    /// Whether [`Scatter::sample`] depends on `lobe`: not where there is one lobe only.
+    const HAS_LOBES: bool;
+
     /// Value and density for a pair of directions. Delta lobes are not part of it.
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue;
 
@@ -199,6 +202,51 @@ impl Bsdf {
     }
 }
 
+/// Takes a model by its own type.
+pub trait Receive<M> {
+    /// Takes it.
+    fn receive(&mut self, model: M);
+}
+
+/// Takes whichever model a surface turns out to have, by its own type: nobody has to match on it later.
+pub trait ReceiveAny:
+    Receive<Lambert>
+    + Receive<OrenNayar>
+    + Receive<Mirror>
+    + Receive<Dielectric>
+    + Receive<RoughDielectric>
+    + Receive<Conductor>
+    + Receive<Plastic>
+    + Receive<Principled>
+{
+}
+
+impl<R> ReceiveAny for R where
+    R: Receive<Lambert>
+        + Receive<OrenNayar>
+        + Receive<Mirror>
+        + Receive<Dielectric>
+        + Receive<RoughDielectric>
+        + Receive<Conductor>
+        + Receive<Plastic>
+        + Receive<Principled>
+{
+}
+
+macro_rules! received_into_the_closed_set {
+    ($($model:ident)*) => {
+        $(impl Receive<$model> for Bsdf {
+            fn receive(&mut self, model: $model) {
+                *self = Self::$model(model);
+            }
+        })*
+    };
+}
+
+received_into_the_closed_set!(
+    Lambert OrenNayar Mirror Dielectric RoughDielectric Conductor Plastic Principled
+);
+
 /// Calls the same method on whichever model it is.
 macro_rules! each {
     ($bsdf:expr, $model:ident => $call:expr) => {
@@ -216,6 +264,8 @@ macro_rules! each {
 }
 
 impl Scatter for Bsdf {
+    const HAS_LOBES: bool = true;
+
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         each!(self, model => model.evaluate(wo, wi))

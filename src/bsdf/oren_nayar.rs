@@ -55,6 +55,8 @@ impl OrenNayar {
 }
 
 impl Scatter for OrenNayar {
+    const HAS_LOBES: bool = false;
+
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if wo.z <= 0.0 || wi.z <= 0.0 {

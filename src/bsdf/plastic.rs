@@ -76,6 +76,8 @@ impl Plastic {
 }
 
 impl Scatter for Plastic {
+    const HAS_LOBES: bool = true;
+
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if wo.z > 0.0 { self.value(self.coat(wo), wo, wi) } else { BsdfValue::ZERO }

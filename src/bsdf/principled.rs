@@ -268,6 +268,8 @@ impl Principled {
 }
 
 impl Scatter for Principled {
+    const HAS_LOBES: bool = true;
+
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if wo.z > 0.0 { self.value(&self.view(wo), wo, wi) } else { BsdfValue::ZERO }
     }

@@ -148,6 +148,8 @@ impl RoughDielectric {
 }
 
 impl Scatter for RoughDielectric {
+    const HAS_LOBES: bool = true;
+
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
         if wo.z > 0.0 { self.value(self.loss(wo), wo, wi) } else { BsdfValue::ZERO }

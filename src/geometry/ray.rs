@@ -5,8 +5,8 @@ use crate::math::Vec3;
 /// "No such index": the instance of a hit that is not inside one, the geometry of a miss.
 pub const NONE: u32 = u32::MAX;
 
-/// A ray segment `origin + t direction`, `t_min < t < t_max`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A ray segment `origin + t direction`, `t_min < t < t_max`. The default is no ray yet, for arrays to come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Ray {
     /// Start, in world space.
@@ -51,6 +51,12 @@ pub struct PrimitiveId {
     pub geometry: u32,
     /// Index of the triangle in the mesh.
     pub primitive: u32,
+}
+
+impl Default for PrimitiveId {
+    fn default() -> Self {
+        Self::MISS
+    }
 }
 
 impl PrimitiveId {

@@ -12,10 +12,12 @@ pub enum Stage {
     Generate,
     /// Closest hits.
     Intersect,
-    /// Hits to surface interactions and BSDFs.
+    /// Hits to surface interactions.
     Interact,
     /// Emission found by the rays themselves.
     Emit,
+    /// Materials and their textures to scattering models.
+    Materials,
     /// Choosing lights and evaluating BSDFs towards them.
     SampleLights,
     /// Shadow rays.
@@ -30,11 +32,12 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage, in order.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Generate,
         Self::Intersect,
         Self::Interact,
         Self::Emit,
+        Self::Materials,
         Self::SampleLights,
         Self::Shadow,
         Self::Scatter,
@@ -49,6 +52,7 @@ impl Stage {
             Self::Intersect => "intersect",
             Self::Interact => "interact",
             Self::Emit => "emit",
+            Self::Materials => "materials",
             Self::SampleLights => "sample lights",
             Self::Shadow => "shadow",
             Self::Scatter => "scatter",

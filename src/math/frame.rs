@@ -5,7 +5,7 @@
 use super::Vec3;
 
 /// Right-handed orthonormal frame; `normal` is the local z axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Local x axis in world space.
     pub tangent: Vec3,
@@ -17,7 +17,7 @@ pub struct Frame {
 
 impl Frame {
     /// A frame with z along the unit vector `normal`; the rotation about it is arbitrary but fixed.
-    #[inline]
+    #[inline(always)]
     pub fn from_normal(normal: Vec3) -> Self {
         let sign = 1.0_f32.copysign(normal.z);
         let a = -1.0 / (sign + normal.z);
@@ -31,7 +31,7 @@ impl Frame {
 
     /// A frame with z along the unit vector `normal` and x as close to `tangent` as that allows
     /// (Gram-Schmidt); falls back to [`Frame::from_normal`] where the two are parallel.
-    #[inline]
+    #[inline(always)]
     pub fn from_normal_tangent(normal: Vec3, tangent: Vec3) -> Self {
         let projected = tangent - normal * normal.dot(tangent);
         let length_squared = projected.length_squared();
@@ -47,13 +47,13 @@ impl Frame {
     }
 
     /// World components of the local vector `v`.
-    #[inline]
+    #[inline(always)]
     pub fn world_from_local(&self, v: Vec3) -> Vec3 {
         self.tangent * v.x + self.bitangent * v.y + self.normal * v.z
     }
 
     /// Local components of the world vector `v`.
-    #[inline]
+    #[inline(always)]
     pub fn local_from_world(&self, v: Vec3) -> Vec3 {
         Vec3::new(self.tangent.dot(v), self.bitangent.dot(v), self.normal.dot(v))
     }

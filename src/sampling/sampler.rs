@@ -52,7 +52,7 @@ impl Sampler {
 }
 
 /// The numbers of one path: a pure function of [`Dimension`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PathSampler {
     pub(super) key: u64,
     pub(super) index: u32,

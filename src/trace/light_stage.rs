@@ -1,10 +1,12 @@
 //! Stage "sample lights": picks a light for every vertex that can scatter its light, evaluates the BSDF
 //! towards it, and leaves a shadow ray with what it would add.
 
-use super::group::{GroupStage, Model};
+use super::batch::Batch;
+use super::group::{Entry, GroupStage};
 use super::path::Path;
 use super::{RayKind, Tracer, Vertex, power_heuristic};
 use crate::accel::Accelerator;
+use crate::bsdf::Scatter;
 use crate::geometry::Ray;
 use crate::math::Rgb;
 use crate::sampling::Dimension;
@@ -16,18 +18,17 @@ pub(super) struct LightStage<'a, 't, A> {
     pub(super) slots: &'a [Path],
     /// Where on its light each vertex looks.
     pub(super) positions: &'a [[f32; 2]],
-    pub(super) shadow_rays: &'a mut Vec<Ray>,
+    pub(super) shadow_rays: &'a mut Batch<Ray>,
     /// Slot, and what the light adds to it if it is visible.
-    pub(super) shadow_gains: &'a mut Vec<(u32, Rgb)>,
+    pub(super) shadow_gains: &'a mut Batch<(u32, Rgb)>,
 }
 
 impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
-    fn visit<M: Model>(&mut self, group: &[u32]) {
+    fn visit<M: Scatter>(&mut self, group: &[Entry<M>]) {
         let world = self.tracer.world;
         let lights = &world.lights;
-        for &i in group {
-            let vertex = &self.vertices[i as usize];
-            let model = M::of(&vertex.bsdf);
+        for entry in group {
+            let (vertex, model) = (&self.vertices[entry.vertex as usize], &entry.model);
             if model.is_delta() {
                 continue;
             }
@@ -37,7 +38,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
                 true => path.sampler.one(Dimension::LightSelect { bounce }),
                 false => 0.0,
             };
-            let position = self.positions[i as usize];
+            let position = self.positions[entry.vertex as usize];
             let Some(light) = lights.sample(world, vertex.at.point, select, position) else {
                 continue;
             };

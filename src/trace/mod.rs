@@ -3,6 +3,7 @@
 //! A block is a rectangle of pixels and a range of samples; what comes out is one [`PixelSample`] a path.
 //! The order in which they come out means nothing: the film adds them exactly.
 
+mod batch;
 mod path;
 mod generate_stage;
 mod group;
@@ -17,7 +18,6 @@ pub use aov::{FirstHit, first_hit};
 pub use wavefront::Wavefront;
 
 use crate::accel::Accelerator;
-use crate::bsdf::Bsdf;
 use crate::camera::{Camera, CameraRay};
 use crate::filter::FilterSampler;
 use crate::geometry::PrimitiveId;
@@ -142,12 +142,11 @@ impl<A> Tracer<'_, A> {
 }
 
 /// A path vertex on a surface.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Vertex {
     /// Slot of its path.
     slot: u32,
     at: SurfaceInteraction,
-    bsdf: Bsdf,
     /// Direction back along the ray, in the shading frame.
     wo: Vec3,
 }

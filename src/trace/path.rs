@@ -6,7 +6,7 @@ use crate::math::Rgb;
 use crate::sampling::PathSampler;
 
 /// State of one path; it stays in its slot while it lives.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Path {
     /// The ray to be traced next.
     pub(super) ray: Ray,

@@ -1,9 +1,11 @@
 //! Stage "scatter": chooses where each path goes on.
 
-use super::group::{GroupStage, Model};
+use super::batch::Batch;
+use super::group::{Entry, GroupStage};
 use super::path::Path;
 use super::{RayKind, SCATTERED_SPREAD, Tracer, Vertex};
 use crate::accel::Accelerator;
+use crate::bsdf::Scatter;
 use crate::geometry::Ray;
 use crate::math::Rgb;
 use crate::sampling::Dimension;
@@ -16,17 +18,18 @@ pub(super) struct ScatterStage<'a, 't, A> {
     pub(super) directions: &'a [[f32; 2]],
     pub(super) slots: &'a mut [Path],
     /// Slots of paths that go on.
-    pub(super) active: &'a mut Vec<u32>,
+    pub(super) active: &'a mut Batch<u32>,
     /// Slots of paths that end here.
-    pub(super) finished: &'a mut Vec<u32>,
+    pub(super) finished: &'a mut Batch<u32>,
 }
 
 impl<A: Accelerator> GroupStage for ScatterStage<'_, '_, A> {
-    fn visit<M: Model>(&mut self, group: &[u32]) {
-        for &i in group {
-            let vertex = &self.vertices[i as usize];
+    fn visit<M: Scatter>(&mut self, group: &[Entry<M>]) {
+        for entry in group {
+            let vertex = &self.vertices[entry.vertex as usize];
+            let direction = self.directions[entry.vertex as usize];
             let path = &mut self.slots[vertex.slot as usize];
-            let goes_on = scatter(path, vertex, M::of(&vertex.bsdf), self.directions[i as usize], self.tracer);
+            let goes_on = scatter(path, vertex, &entry.model, direction, self.tracer);
             let list = if goes_on { &mut *self.active } else { &mut *self.finished };
             list.push(vertex.slot);
         }
@@ -35,7 +38,7 @@ impl<A: Accelerator> GroupStage for ScatterStage<'_, '_, A> {
 
 /// Samples the model and sets the path's next ray; false where the path ends.
 #[inline]
-fn scatter<M: Model, A: Accelerator>(
+fn scatter<M: Scatter, A: Accelerator>(
     path: &mut Path,
     vertex: &Vertex,
     model: &M,

@@ -1,7 +1,7 @@
 //! The wavefront: many paths advance together, one stage at a time.
 //!
 //! ```text
-//! generate -> [ intersect -> interact -> emit -> sample lights -> shadow -> scatter -> roulette ]* -> accumulate
+//! generate -> [ intersect -> interact -> emit -> materials -> sample lights -> shadow -> scatter -> roulette ]* -> accumulate
 //! ```
 //! A stage is a plain loop over the batch, so each is timed with two clock reads and its inner loop stays
 //! small. Finished slots are refilled with the block's next samples, so batches stay full to the end.
@@ -10,7 +10,8 @@
 //! combined by the power heuristic).
 
 use super::generate_stage::Starts;
-use super::group::Groups;
+use super::batch::Batch;
+use super::group::{Groups, Receiver};
 use super::light_stage::LightStage;
 use super::numbers::draw_pairs;
 use super::path::Path;
@@ -25,23 +26,23 @@ use crate::sampling::Dimension;
 
 /// The arrays of one worker. They are allocated once; the bounce loop allocates nothing.
 pub struct Wavefront {
-    slots: Vec<Path>,
-    free: Vec<u32>,
+    slots: Box<[Path]>,
+    /// Slots without a path.
+    free: Batch<u32>,
     /// Slots whose path goes on.
-    active: Vec<u32>,
-    rays: Vec<Ray>,
-    hits: Vec<Hit>,
-    vertices: Vec<Vertex>,
+    active: Batch<u32>,
+    rays: Batch<Ray>,
+    hits: Box<[Hit]>,
+    vertices: Batch<Vertex>,
     groups: Groups,
     /// Random numbers of the vertices, for the stage at hand.
     pairs: Vec<[f32; 2]>,
-    shadow_rays: Vec<Ray>,
+    shadow_rays: Batch<Ray>,
     /// Slot, and what the light adds to it if it is visible.
-    shadow_gains: Vec<(u32, Rgb)>,
-    blocked: Vec<bool>,
+    shadow_gains: Batch<(u32, Rgb)>,
+    blocked: Box<[bool]>,
     /// Slots whose path has ended.
-    finished: Vec<u32>,
-    capacity: usize,
+    finished: Batch<u32>,
     isa: Isa,
     /// What the stages have cost so far.
     pub ledger: Ledger,
@@ -55,19 +56,18 @@ impl Wavefront {
     pub fn new(batch: usize) -> Self {
         let capacity = batch.max(1);
         Self {
-            slots: Vec::with_capacity(capacity),
-            free: Vec::with_capacity(capacity),
-            active: Vec::with_capacity(capacity),
-            rays: Vec::with_capacity(capacity),
-            hits: Vec::with_capacity(capacity),
-            vertices: Vec::with_capacity(capacity),
+            slots: vec![Path::default(); capacity].into(),
+            free: Batch::new(capacity),
+            active: Batch::new(capacity),
+            rays: Batch::new(capacity),
+            hits: vec![Hit::MISS; capacity].into(),
+            vertices: Batch::new(capacity),
             groups: Groups::with_capacity(capacity),
             pairs: Vec::with_capacity(capacity),
-            shadow_rays: Vec::with_capacity(capacity),
-            shadow_gains: Vec::with_capacity(capacity),
-            blocked: Vec::with_capacity(capacity),
-            finished: Vec::with_capacity(capacity),
-            capacity,
+            shadow_rays: Batch::new(capacity),
+            shadow_gains: Batch::new(capacity),
+            blocked: vec![false; capacity].into(),
+            finished: Batch::new(capacity),
             isa: Isa::detect(),
             ledger: Ledger::default(),
         }
@@ -83,9 +83,9 @@ impl Wavefront {
     ) {
         let mut starts = block.iter();
         let mut clock = Clock::start();
-        self.slots.clear();
-        self.free.clear();
         self.active.clear();
+        self.free.clear();
+        (0..self.slots.len() as u32).rev().for_each(|slot| self.free.push(slot));
         loop {
             self.generate(tracer, &mut starts, &mut clock);
             if self.active.is_empty() {
@@ -94,6 +94,7 @@ impl Wavefront {
             self.intersect(tracer, filter, &mut clock);
             self.interact(tracer, &mut clock);
             self.emit(tracer, &mut clock);
+            self.materials(tracer, &mut clock);
             self.sample_lights(tracer, &mut clock);
             self.shadow(tracer, filter, &mut clock);
             self.scatter(tracer, &mut clock);
@@ -112,22 +113,15 @@ impl Wavefront {
         let before = self.active.len();
         let Self { slots, free, active, .. } = self;
         loop {
-            let starts = Starts::take(starts, self.capacity - active.len());
+            let starts = Starts::take(starts, free.len());
             if starts.count() == 0 {
                 break;
             }
             tracer.camera_rays(self.isa, &starts, |path| {
-                let slot = match free.pop() {
-                    Some(slot) => {
-                        slots[slot as usize] = path;
-                        slot
-                    }
-                    None => {
-                        slots.push(path);
-                        slots.len() as u32 - 1
-                    }
-                };
-                active.push(slot);
+                if let Some(slot) = free.pop() {
+                    slots[slot as usize] = path;
+                    active.push(slot);
+                }
             });
         }
         let begun = self.active.len() - before;
@@ -144,9 +138,11 @@ impl Wavefront {
         clock: &mut Clock,
     ) {
         self.rays.clear();
-        self.rays.extend(self.active.iter().map(|&slot| self.slots[slot as usize].ray));
-        self.hits.resize(self.rays.len(), Hit::MISS);
-        tracer.accelerator.closest(&self.rays, filter, &mut self.hits);
+        for &slot in &*self.active {
+            self.rays.push(self.slots[slot as usize].ray);
+        }
+        let hits = &mut self.hits[..self.rays.len()];
+        tracer.accelerator.closest(&self.rays, filter, hits);
         clock.lap(&mut self.ledger, Stage::Intersect, self.rays.len());
     }
 
@@ -154,7 +150,7 @@ impl Wavefront {
     fn interact<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
         self.vertices.clear();
         self.finished.clear();
-        for (&slot, hit) in self.active.iter().zip(&self.hits) {
+        for (&slot, hit) in self.active.iter().zip(&*self.hits) {
             let path = &mut self.slots[slot as usize];
             if !hit.is_hit() {
                 if !(tracer.hide_background && path.bounce == 0) {
@@ -181,8 +177,7 @@ impl Wavefront {
             path.last_hit = hit.id;
             let at = tracer.world.interact(&path.ray, hit, path.cone_width);
             let wo = at.frame.local_from_world(-path.ray.direction);
-            let bsdf = tracer.world.bsdf(&at);
-            self.vertices.push(Vertex { slot, at, bsdf, wo });
+            self.vertices.push(Vertex { slot, at, wo });
         }
         clock.lap(&mut self.ledger, Stage::Interact, self.active.len());
     }
@@ -215,9 +210,18 @@ impl Wavefront {
         clock.lap(&mut self.ledger, Stage::Emit, count);
     }
 
+    /// The scattering model of every vertex, filed by its kind.
+    fn materials<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
+        self.groups.clear();
+        for (vertex, i) in self.vertices.iter().zip(0..) {
+            let mut receiver = Receiver { groups: &mut self.groups, vertex: i };
+            tracer.world.scattering(&vertex.at, &mut receiver);
+        }
+        clock.lap(&mut self.ledger, Stage::Materials, self.vertices.len());
+    }
+
     /// Shadow rays towards a light for every vertex that can scatter its light.
     fn sample_lights<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
-        self.groups.sort(&self.vertices);
         self.shadow_rays.clear();
         self.shadow_gains.clear();
         if tracer.world.lights.is_empty() {
@@ -245,10 +249,10 @@ impl Wavefront {
         if self.shadow_rays.is_empty() {
             return;
         }
-        self.blocked.resize(self.shadow_rays.len(), false);
-        tracer.accelerator.occluded(&self.shadow_rays, filter, &mut self.blocked);
-        for (&(slot, gain), blocked) in self.shadow_gains.iter().zip(&self.blocked) {
-            if !blocked {
+        let blocked = &mut self.blocked[..self.shadow_rays.len()];
+        tracer.accelerator.occluded(&self.shadow_rays, filter, blocked);
+        for (&(slot, gain), blocked) in self.shadow_gains.iter().zip(blocked) {
+            if !*blocked {
                 self.slots[slot as usize].radiance += gain;
             }
         }
@@ -302,7 +306,7 @@ impl Wavefront {
 
     /// Hands finished paths over and frees their slots.
     fn accumulate(&mut self, sink: &mut impl FnMut(&PixelSample), clock: &mut Clock) {
-        for &slot in &self.finished {
+        for &slot in &*self.finished {
             let path = &self.slots[slot as usize];
             sink(&PixelSample {
                 pixel: path.pixel,

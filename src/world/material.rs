@@ -2,7 +2,8 @@
 
 use super::{SurfaceInteraction, World};
 use crate::bsdf::{
-    Bsdf, Conductor, Lambert, Mirror, OrenNayar, Plastic, Principled, PrincipledParameters,
+    Bsdf, Conductor, Dielectric, Lambert, Mirror, OrenNayar, Plastic, Principled,
+    PrincipledParameters, ReceiveAny, RoughDielectric,
 };
 use crate::math::Rgb;
 use crate::scene::{
@@ -11,24 +12,30 @@ use crate::scene::{
 use crate::texture::{MipMap, Wrap};
 
 impl World {
-    /// The BSDF at an interaction, in its shading frame, for a ray from outside or inside.
-    pub fn bsdf(&self, at: &SurfaceInteraction) -> Bsdf {
+    /// Gives `receiver` the scattering model at an interaction, in its shading frame, for a ray from outside
+    /// or inside.
+    #[inline(always)]
+    pub fn scattering<R: ReceiveAny>(&self, at: &SurfaceInteraction, receiver: &mut R) {
         let color = |input: &ColorInput| self.color(input, at.uv, at.footprint);
         let scalar = |input: &ScalarInput| self.scalar(input, at.uv, at.footprint);
         match &self.material(at.material).surface {
-            Surface::Lambert { albedo } => Bsdf::Lambert(Lambert::new(color(albedo))),
+            Surface::Lambert { albedo } => receiver.receive(Lambert::new(color(albedo))),
             Surface::OrenNayar { albedo, sigma } => {
-                Bsdf::OrenNayar(OrenNayar::new(color(albedo), *sigma))
+                receiver.receive(OrenNayar::new(color(albedo), *sigma));
             }
-            Surface::Mirror { reflectance } => Bsdf::Mirror(Mirror::new(color(reflectance))),
+            Surface::Mirror { reflectance } => receiver.receive(Mirror::new(color(reflectance))),
             Surface::Dielectric { eta, roughness, transmittance, thin, .. } => {
-                Bsdf::dielectric(*eta, at.entering, *transmittance, *thin, scalar(roughness))
+                let (entering, roughness) = (at.entering, scalar(roughness));
+                match RoughDielectric::new(*eta, entering, *transmittance, *thin, roughness) {
+                    Some(rough) => receiver.receive(rough),
+                    None => receiver.receive(Dielectric::new(*eta, entering, *transmittance, *thin)),
+                }
             }
             Surface::Conductor { eta, k, roughness, anisotropy } => {
-                Bsdf::Conductor(Conductor::new(*eta, *k, scalar(roughness), *anisotropy))
+                receiver.receive(Conductor::new(*eta, *k, scalar(roughness), *anisotropy));
             }
             Surface::Plastic { albedo, eta, roughness } => {
-                Bsdf::Plastic(Plastic::new(color(albedo), *eta, scalar(roughness)))
+                receiver.receive(Plastic::new(color(albedo), *eta, scalar(roughness)));
             }
             Surface::Principled {
                 base_color,
@@ -39,7 +46,7 @@ impl World {
                 clearcoat,
                 clearcoat_roughness,
                 sheen,
-            } => Bsdf::Principled(Principled::new(&PrincipledParameters {
+            } => receiver.receive(Principled::new(&PrincipledParameters {
                 base_color: color(base_color),
                 metallic: scalar(metallic),
                 roughness: scalar(roughness),
@@ -50,6 +57,14 @@ impl World {
                 sheen: *sheen,
             })),
         }
+    }
+
+    /// [`World::scattering`] as one type for all models, where speed does not matter.
+    pub fn bsdf(&self, at: &SurfaceInteraction) -> Bsdf {
+        // Every surface has a model, which takes the place of this one.
+        let mut bsdf = Bsdf::Lambert(Lambert::new(Rgb::BLACK));
+        self.scattering(at, &mut bsdf);
+        bsdf
     }
 
     /// Radiance emitted from the surface, the same on both sides; black where nothing is emitted.
