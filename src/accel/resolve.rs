@@ -21,8 +21,7 @@ pub fn resolve(geometry: &Geometry, ray: &Ray, id: PrimitiveId) -> Hit {
 pub fn resolve_all(geometry: &Geometry, rays: &[Ray], ids: &[PrimitiveId], hits: &mut [Hit]) {
     let isa = Isa::detect();
     let mut lanes = Lanes::new();
-    for ((rays, ids), hits) in
-        rays.chunks(LANES).zip(ids.chunks(LANES)).zip(hits.chunks_mut(LANES))
+    for ((rays, ids), hits) in rays.chunks(LANES).zip(ids.chunks(LANES)).zip(hits.chunks_mut(LANES))
     {
         // Gather those that hit: vertex fetches of neighbouring rays overlap.
         let mut places = [0; LANES];
@@ -91,7 +90,9 @@ impl Lanes {
 
     #[inline(always)]
     fn hit(&self, i: usize, id: PrimitiveId) -> Hit {
-        let [t, u, v, offset] = self.numbers.map(|n| n[i]);
+        // One by one: `map` would move the whole arrays.
+        let [t, u, v, offset] = &self.numbers;
+        let (t, u, v, offset) = (t[i], u[i], v[i], offset[i]);
         let vector = |v: &[[f32; LANES]; 3]| Vec3::new(v[0][i], v[1][i], v[2][i]);
         Hit { t, u, v, offset, point: vector(&self.point), normal: vector(&self.normal), id }
     }

@@ -28,7 +28,8 @@ impl<const N: usize> CameraRays<N> {
         }
     }
 
-    const ZERO: Self = Self {
+    /// No rays yet.
+    pub const NONE: Self = Self {
         origin: [[0.0; N]; 3],
         direction: [[0.0; N]; 3],
         spread: [0.0; N],
@@ -47,15 +48,15 @@ impl<const N: usize> CameraRays<N> {
 }
 
 impl Camera {
-    /// [`Camera::ray`] of every lane. `lens` is ignored unless [`Camera::needs_lens`].
+    /// [`Camera::ray`] of every lane, to `rays`. `lens` is ignored unless [`Camera::needs_lens`].
     #[inline(always)]
     pub fn rays<const N: usize>(
         &self,
         [film_x, film_y]: &[[f32; N]; 2],
         [lens_x, lens_y]: &[[f32; N]; 2],
-    ) -> CameraRays<N> {
+        rays: &mut CameraRays<N>,
+    ) {
         let basis = &self.basis;
-        let mut rays = CameraRays::ZERO;
         // The projection is chosen outside the loops, so that each is straight. (A macro, because closures
         // cannot be made to be inlined.)
         macro_rules! each_lane {
@@ -75,6 +76,5 @@ impl Camera {
             Projection::Orthographic(p) => each_lane!(i => p.ray(basis, [film_x[i], film_y[i]])),
             Projection::Panoramic(p) => each_lane!(i => p.ray(basis, [film_x[i], film_y[i]])),
         }
-        rays
     }
 }

@@ -48,7 +48,10 @@ mod tests {
                 let (low, high) = [0.001, 0.999]
                     .map(|part| bisection.sample((i as f32 + part) / SHARES as f32).0)
                     .into();
-                assert!(pair[0] <= low + 1e-5 && high <= pair[1] + 1e-5, "{i}: {pair:?} {low} {high}");
+                assert!(
+                    pair[0] <= low + 1e-5 && high <= pair[1] + 1e-5,
+                    "{i}: {pair:?} {low} {high}"
+                );
             }
         }
     }

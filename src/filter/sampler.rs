@@ -90,50 +90,92 @@ impl FilterSampler {
     }
 
     /// (offset from the pixel's centre in pixels, within the radius; weight) for `u` in [0, 1)^2, which is
-    /// best the sampler's film dimension. Without branches, so that a loop over it can be vectorised.
+    /// best the sampler's film dimension.
     #[inline(always)]
-    pub fn sample(&self, [u, v]: [f32; 2]) -> ([f32; 2], f32) {
-        let [first, rest @ ..] = self.choices;
-        let choice = rest.iter().fold(first, |chosen, next| {
-            let take = u >= next.start;
-            Choice {
-                start: if take { next.start } else { chosen.start },
-                scale: if take { next.scale } else { chosen.scale },
-                x: if take { next.x } else { chosen.x },
-                y: if take { next.y } else { chosen.y },
-                weight: if take { next.weight } else { chosen.weight },
-            }
+    pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
+        let (shares, weight) = choose(&self.choices, u);
+        let offsets = shares.map(|Share { place, within }| {
+            self.offset(
+                self.table[place as usize % TABLE],
+                self.table[(place as usize + 1) % TABLE],
+                within,
+            )
         });
-        let x = self.quantile(choice.x, (u - choice.start) * choice.scale);
-        let y = self.quantile(choice.y, v * SHARES as f32);
-        ([x, y], choice.weight)
+        (offsets, weight)
     }
 
-    /// [`FilterSampler::sample`] of `N` numbers at once: offsets and weights.
+    /// [`FilterSampler::sample`] of `N` numbers at once: offsets and weights. Loops without branches before and
+    /// after the look-up, so that the compiler vectorises them.
     #[inline(always)]
     pub fn sample_lanes<const N: usize>(
         &self,
         [u, v]: &[[f32; N]; 2],
-        [x, y]: &mut [[f32; N]; 2],
+        offsets: &mut [[f32; N]; 2],
         weights: &mut [f32; N],
     ) {
+        let choices = self.choices;
+        let mut places = [[0; N]; 2];
+        let mut withins = [[0.0; N]; 2];
         for i in 0..N {
-            ([x[i], y[i]], weights[i]) = self.sample([u[i], v[i]]);
+            let ([x, y], weight) = choose(&choices, [u[i], v[i]]);
+            (places[0][i], places[1][i]) = (x.place, y.place);
+            (withins[0][i], withins[1][i]) = (x.within, y.within);
+            weights[i] = weight;
+        }
+        for ((places, withins), offsets) in places.iter().zip(&withins).zip(offsets) {
+            let mut low = [0.0; N];
+            let mut high = [0.0; N];
+            for i in 0..N {
+                low[i] = self.table[places[i] as usize % TABLE];
+                high[i] = self.table[(places[i] as usize + 1) % TABLE];
+            }
+            for i in 0..N {
+                offsets[i] = self.offset(low[i], high[i], withins[i]);
+            }
         }
     }
 
-    /// The offset at `place`, in [0, [`SHARES`]] but for rounding, of the table that begins at `base`.
+    /// The offset a part `within` of the way from one quantile to the next.
     #[inline(always)]
-    fn quantile(&self, base: u32, place: f32) -> f32 {
-        // Rounds down by adding a number whose last bit counts ones; a whole number may round to the share
-        // before, at whose end it is. The last share goes on to its end where `place` has rounded up.
-        const ONES: f32 = 8_388_608.0;
-        let rounded = (place - 0.5).max(0.0).min((SHARES - 1) as f32) + ONES;
-        let share = rounded.to_bits() - ONES.to_bits();
-        let within = place - (rounded - ONES);
-        let i = (base + share) as usize;
-        let [low, high] = [self.table[i % TABLE], self.table[(i + 1) % TABLE]];
+    fn offset(&self, low: f32, high: f32, within: f32) -> f32 {
         let position = (low + (high - low) * within).max(0.0).min(1.0);
         (2.0 * position - 1.0) * self.radius
     }
+}
+
+/// A place between two quantiles.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    /// Of the lower quantile in the table.
+    place: u32,
+    /// How far from it to the next, in [0, 1] but for rounding.
+    within: f32,
+}
+
+/// Where in the table x and y are looked up, and the sample's weight. Without branches.
+#[inline(always)]
+fn choose(choices: &[Choice; 4], [u, v]: [f32; 2]) -> ([Share; 2], f32) {
+    let mut chosen = choices[0];
+    for next in &choices[1..] {
+        let take = u >= next.start;
+        chosen = Choice {
+            start: if take { next.start } else { chosen.start },
+            scale: if take { next.scale } else { chosen.scale },
+            x: if take { next.x } else { chosen.x },
+            y: if take { next.y } else { chosen.y },
+            weight: if take { next.weight } else { chosen.weight },
+        };
+    }
+    let x = share(chosen.x, (u - chosen.start) * chosen.scale);
+    ([x, share(chosen.y, v * SHARES as f32)], chosen.weight)
+}
+
+/// `number`, in [0, [`SHARES`]] but for rounding, in the table that begins at `base`.
+#[inline(always)]
+fn share(base: u32, number: f32) -> Share {
+    // Rounds down by adding a number whose last bit counts ones; a whole number may round to the share
+    // before, at whose end it is. The last share goes on to its end where `number` has rounded up.
+    const ONES: f32 = 8_388_608.0;
+    let rounded = (number - 0.5).max(0.0).min((SHARES - 1) as f32) + ONES;
+    Share { place: base + (rounded.to_bits() - ONES.to_bits()), within: number - (rounded - ONES) }
 }

@@ -29,7 +29,7 @@ impl TriangleMesh {
     }
 
     /// The three corners of `primitive`, in object space.
-    #[inline]
+    #[inline(always)]
     pub fn vertices(&self, primitive: u32) -> [Vec3; 3] {
         self.triangles[primitive as usize].map(|i| Vec3::from_array(self.positions[i as usize]))
     }
@@ -90,7 +90,7 @@ pub struct Geometry {
 
 impl Geometry {
     /// The mesh that a hit is in.
-    #[inline]
+    #[inline(always)]
     pub fn mesh(&self, id: PrimitiveId) -> &TriangleMesh {
         if id.instance == NONE {
             &self.meshes[id.geometry as usize]
@@ -102,7 +102,7 @@ impl Geometry {
 
     /// The corners of a primitive in world space, exact to `f64` round-off, and the magnitude (in world
     /// units) by whose `f32` round-off a backend may have misplaced it, beyond the corners' own.
-    #[inline]
+    #[inline(always)]
     pub fn world_vertices(&self, id: PrimitiveId) -> ([DVec3; 3], f32) {
         let local = self.mesh(id).vertices(id.primitive);
         if id.instance == NONE {

@@ -19,7 +19,7 @@ impl ConstantEnvironment {
     }
 
     /// A uniform direction of the sphere.
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, u: [f32; 2]) -> LightSample {
         let direction = warp::sphere(u);
         LightSample {

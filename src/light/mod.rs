@@ -60,7 +60,7 @@ pub enum Light {
 impl Light {
     /// A direction from `point` to the light, chosen by a uniform point of the square; `None` where the
     /// light sends nothing.
-    #[inline]
+    #[inline(always)]
     pub fn sample(&self, point: Vec3, u: [f32; 2]) -> Option<LightSample> {
         match self {
             Self::Point(light) => light.sample(point),

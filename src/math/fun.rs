@@ -67,6 +67,23 @@ pub fn sin_cos_eighth(x: f32) -> (f32, f32) {
     (sin, cos)
 }
 
+/// (sin, cos) of `turn` full turns, 0 <= turn <= 1, in `f32` alone: the range reduction is exact, and the error
+/// that of [`sin_cos_eighth`]. For random angles.
+#[inline(always)]
+pub fn sin_cos_turn(turn: f32) -> (f32, f32) {
+    // The nearest quarter, in the lowest bits of the sum; two eighths make a quarter.
+    const ROUND: f32 = 12_582_912.0;
+    let quarters = 4.0 * turn;
+    let rounded = quarters + ROUND;
+    let (sin, cos) = sin_cos_eighth(2.0 * (quarters - (rounded - ROUND)));
+    let (sin, cos) = (sin.to_bits(), cos.to_bits());
+    let quadrant = rounded.to_bits();
+    let swap = (sin ^ cos) & (quadrant & 1).wrapping_neg();
+    let sin_sign = (quadrant & 2) << 30;
+    let cos_sign = (quadrant.wrapping_add(1) & 2) << 30;
+    (f32::from_bits(sin ^ swap ^ sin_sign), f32::from_bits(cos ^ swap ^ cos_sign))
+}
+
 /// (sin, cos) of `turns` full turns (2 pi each): the range reduction is exact.
 #[inline(always)]
 pub fn sin_cos_turns(turns: f32) -> (f32, f32) {

@@ -39,7 +39,7 @@ pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
 pub fn sphere([u, v]: [f32; 2]) -> Vec3 {
     let z = 1.0 - 2.0 * u;
     let r = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = fun::sin_cos_turns(v);
+    let (sin, cos) = fun::sin_cos_turn(v);
     Vec3::new(r * cos, r * sin, z)
 }
 
@@ -50,7 +50,7 @@ pub fn cone([u, v]: [f32; 2], one_minus_cos: f32) -> Vec3 {
     let h = u * one_minus_cos;
     // sin^2 = (1 - cos)(1 + cos) = h (2 - h)
     let r = (h * (2.0 - h)).max(0.0).sqrt();
-    let (sin, cos) = fun::sin_cos_turns(v);
+    let (sin, cos) = fun::sin_cos_turn(v);
     Vec3::new(r * cos, r * sin, 1.0 - h)
 }
 

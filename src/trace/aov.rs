@@ -40,7 +40,11 @@ pub fn first_hit<A: Accelerator, F: HitFilter>(
     if !hit.is_hit() {
         return None;
     }
-    let at = tracer.world.interact(&start.camera.ray, &hit, start.camera.initial_width + start.camera.spread * hit.t);
+    let at = tracer.world.interact(
+        &start.camera.ray,
+        &hit,
+        start.camera.initial_width + start.camera.spread * hit.t,
+    );
     let wo = at.frame.local_from_world(-start.camera.ray.direction);
     Some(FirstHit {
         depth: hit.t,

@@ -1,47 +1,67 @@
 //! Pairs of random numbers for many vertices at once, in vector instructions.
 
 use super::Vertex;
+use super::batch::Batch;
 use super::generate_stage::LANES;
 use super::path::Path;
 use crate::os::{Isa, Kernel};
-use crate::sampling::{Dimension, PathSamplers, Sampler};
+use crate::sampling::{Dimension, PathSamplers, Sampler, SamplerKind};
+
+/// Pairs of numbers in [0, 1), one for each vertex of a batch.
+pub(super) struct Pairs {
+    pairs: Batch<[f32; 2]>,
+    samplers: PathSamplers<LANES>,
+    bounces: [u32; LANES],
+    drawn: [[f32; LANES]; 2],
+}
+
+impl Pairs {
+    /// Room for `capacity` vertices.
+    pub(super) fn new(capacity: usize) -> Self {
+        Self {
+            pairs: Batch::new(capacity),
+            samplers: PathSamplers::new(&Sampler::new(SamplerKind::default(), 0)),
+            bounces: [0; LANES],
+            drawn: [[0.0; LANES]; 2],
+        }
+    }
+
+    /// The numbers `dimension(bounce)` of every vertex, in their order.
+    pub(super) fn draw(
+        &mut self,
+        isa: Isa,
+        vertices: &[Vertex],
+        slots: &[Path],
+        dimension: impl Fn(u32) -> Dimension + Copy,
+    ) -> &[[f32; 2]] {
+        self.pairs.clear();
+        for vertices in vertices.chunks(LANES) {
+            for (i, vertex) in vertices.iter().enumerate() {
+                let path = &slots[vertex.slot as usize];
+                self.samplers.set_lane(i, path.sampler);
+                self.bounces[i] = path.bounce;
+            }
+            let Self { samplers, bounces, drawn, .. } = &mut *self;
+            isa.run(PairsKernel { samplers, bounces, dimension, drawn });
+            for i in 0..vertices.len() {
+                self.pairs.push([self.drawn[0][i], self.drawn[1][i]]);
+            }
+        }
+        &self.pairs
+    }
+}
 
 struct PairsKernel<'a, D> {
     samplers: &'a PathSamplers<LANES>,
     bounces: &'a [u32; LANES],
     dimension: D,
-    pairs: &'a mut [[f32; 2]; LANES],
+    drawn: &'a mut [[f32; LANES]; 2],
 }
 
 impl<D: Fn(u32) -> Dimension> Kernel for PairsKernel<'_, D> {
     #[inline(always)]
     fn run(self) {
-        let Self { samplers, bounces, dimension, pairs } = self;
-        let [x, y] = samplers.two(|i| dimension(bounces[i]));
-        for i in 0..LANES {
-            pairs[i] = [x[i], y[i]];
-        }
-    }
-}
-
-/// Fills `pairs` with the numbers `dimension(bounce)` of every vertex, in their order.
-pub(super) fn draw_pairs(
-    isa: Isa,
-    sampler: &Sampler,
-    (vertices, slots): (&[Vertex], &[Path]),
-    dimension: impl Fn(u32) -> Dimension + Copy,
-    pairs: &mut Vec<[f32; 2]>,
-) {
-    pairs.clear();
-    for vertices in vertices.chunks(LANES) {
-        let paths = vertices.iter().map(|vertex| &slots[vertex.slot as usize]);
-        let samplers = &PathSamplers::gather(sampler, paths.clone().map(|path| path.sampler));
-        let mut bounces = [0; LANES];
-        for (bounce, path) in bounces.iter_mut().zip(paths) {
-            *bounce = path.bounce;
-        }
-        let mut drawn = [[0.0; 2]; LANES];
-        isa.run(PairsKernel { samplers, bounces: &bounces, dimension, pairs: &mut drawn });
-        pairs.extend_from_slice(&drawn[..vertices.len()]);
+        let Self { samplers, bounces, dimension, drawn } = self;
+        samplers.two(|i| dimension(bounces[i]), drawn);
     }
 }

@@ -9,11 +9,11 @@
 //! change no bit. Source of the estimator: Veach 1997, chapters 9 and 10 (light and BSDF sampling,
 //! combined by the power heuristic).
 
-use super::generate_stage::Starts;
 use super::batch::Batch;
+use super::generate_stage::Starts;
 use super::group::{Groups, Receiver};
 use super::light_stage::LightStage;
-use super::numbers::draw_pairs;
+use super::numbers::Pairs;
 use super::path::Path;
 use super::scatter_stage::ScatterStage;
 use super::{Block, PixelSample, Tracer, Vertex, power_heuristic, survival_probability};
@@ -26,6 +26,7 @@ use crate::sampling::Dimension;
 
 /// The arrays of one worker. They are allocated once; the bounce loop allocates nothing.
 pub struct Wavefront {
+    begun: Starts,
     slots: Box<[Path]>,
     /// Slots without a path.
     free: Batch<u32>,
@@ -36,7 +37,7 @@ pub struct Wavefront {
     vertices: Batch<Vertex>,
     groups: Groups,
     /// Random numbers of the vertices, for the stage at hand.
-    pairs: Vec<[f32; 2]>,
+    pairs: Pairs,
     shadow_rays: Batch<Ray>,
     /// Slot, and what the light adds to it if it is visible.
     shadow_gains: Batch<(u32, Rgb)>,
@@ -56,6 +57,7 @@ impl Wavefront {
     pub fn new(batch: usize) -> Self {
         let capacity = batch.max(1);
         Self {
+            begun: Starts::new(),
             slots: vec![Path::default(); capacity].into(),
             free: Batch::new(capacity),
             active: Batch::new(capacity),
@@ -63,7 +65,7 @@ impl Wavefront {
             hits: vec![Hit::MISS; capacity].into(),
             vertices: Batch::new(capacity),
             groups: Groups::with_capacity(capacity),
-            pairs: Vec::with_capacity(capacity),
+            pairs: Pairs::new(capacity),
             shadow_rays: Batch::new(capacity),
             shadow_gains: Batch::new(capacity),
             blocked: vec![false; capacity].into(),
@@ -111,18 +113,14 @@ impl Wavefront {
         clock: &mut Clock,
     ) {
         let before = self.active.len();
-        let Self { slots, free, active, .. } = self;
-        loop {
-            let starts = Starts::take(starts, free.len());
-            if starts.count() == 0 {
-                break;
-            }
-            tracer.camera_rays(self.isa, &starts, |path| {
+        let Self { slots, free, active, begun, .. } = self;
+        while begun.take(tracer, self.isa, starts, free.len()) > 0 {
+            for path in begun.paths(tracer) {
                 if let Some(slot) = free.pop() {
                     slots[slot as usize] = path;
                     active.push(slot);
                 }
-            });
+            }
         }
         let begun = self.active.len() - before;
         self.ledger.camera_rays += begun as u64;
@@ -227,12 +225,13 @@ impl Wavefront {
         if tracer.world.lights.is_empty() {
             return;
         }
-        self.draw_pairs(tracer, |bounce| Dimension::LightPosition { bounce });
+        let position = |bounce| Dimension::LightPosition { bounce };
+        let positions = self.pairs.draw(self.isa, &self.vertices, &self.slots, position);
         self.groups.each(&mut LightStage {
             tracer,
             vertices: &self.vertices,
             slots: &self.slots,
-            positions: &self.pairs,
+            positions,
             shadow_rays: &mut self.shadow_rays,
             shadow_gains: &mut self.shadow_gains,
         });
@@ -263,25 +262,17 @@ impl Wavefront {
     /// Chooses where each path goes on.
     fn scatter<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
         self.active.clear();
-        self.draw_pairs(tracer, |bounce| Dimension::ScatterDirection { bounce });
+        let direction = |bounce| Dimension::ScatterDirection { bounce };
+        let directions = self.pairs.draw(self.isa, &self.vertices, &self.slots, direction);
         self.groups.each(&mut ScatterStage {
             tracer,
             vertices: &self.vertices,
-            directions: &self.pairs,
+            directions,
             slots: &mut self.slots,
             active: &mut self.active,
             finished: &mut self.finished,
         });
         clock.lap(&mut self.ledger, Stage::Scatter, self.vertices.len());
-    }
-
-    fn draw_pairs<A>(
-        &mut self,
-        tracer: &Tracer<'_, A>,
-        dimension: impl Fn(u32) -> Dimension + Copy,
-    ) {
-        let vertices = (&*self.vertices, &*self.slots);
-        draw_pairs(self.isa, &tracer.sampler, vertices, dimension, &mut self.pairs);
     }
 
     /// Ends dim paths at random, and gives the survivors the energy of those that ended.

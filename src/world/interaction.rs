@@ -76,8 +76,7 @@ impl World {
     /// The normal of a smooth mesh at a hit, on the side of `n_geometric`.
     #[inline]
     fn interpolated_normal(&self, surface: &SurfaceMesh, hit: &Hit, n_geometric: Vec3) -> Vec3 {
-        let [a, b, c] =
-            self.corners(hit.id).map(|i| Vec3::from_array(surface.normals[i as usize]));
+        let [a, b, c] = self.corners(hit.id).map(|i| Vec3::from_array(surface.normals[i as usize]));
         let normal = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
         let normal = match hit.id.instance {
             NONE => normal,

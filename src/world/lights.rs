@@ -102,6 +102,7 @@ impl Lights {
 
     /// Chooses a light by `select`, and a direction to it from `point` by `position`. `None` where the
     /// chosen light sends nothing. There must be a light.
+    #[inline(always)]
     pub fn sample(
         &self,
         world: &World,

@@ -28,7 +28,9 @@ impl World {
                 let (entering, roughness) = (at.entering, scalar(roughness));
                 match RoughDielectric::new(*eta, entering, *transmittance, *thin, roughness) {
                     Some(rough) => receiver.receive(rough),
-                    None => receiver.receive(Dielectric::new(*eta, entering, *transmittance, *thin)),
+                    None => {
+                        receiver.receive(Dielectric::new(*eta, entering, *transmittance, *thin))
+                    }
                 }
             }
             Surface::Conductor { eta, k, roughness, anisotropy } => {
