@@ -4,7 +4,8 @@
 //! The same image gives the same bytes, in any process and on any number of threads.
 
 use super::atomic::write_whole;
-use super::read::{MAX_BYTES, MAX_SIDE, open, too_large};
+use super::open::open_regular;
+use super::read::{MAX_BYTES, MAX_SIDE, too_large};
 use crate::error::{Error, Result};
 use exr::meta::attribute::Chromaticities;
 use exr::prelude as format;
@@ -186,7 +187,7 @@ fn sort_attributes(file: &mut (impl Read + Write + Seek)) -> io::Result<()> {
 /// # Errors
 /// When the file cannot be read, is damaged, holds deep or subsampled data, or is too large.
 pub fn read_exr_channels(path: &Path) -> Result<ExrImage> {
-    let file = open(path)?;
+    let file = io::BufReader::new(open_regular(path)?);
     // The decoder of one compression (B44) can overflow on damaged data, which panics where arithmetic is
     // checked. In one thread the panic can be caught; in the crate's thread pool it would abort.
     catch_unwind(AssertUnwindSafe(|| decode(path, file)))
