@@ -2,9 +2,10 @@
 
 use super::args::{Backend, Render};
 use super::output::{Outputs, Picture};
-use super::report::{self, Phases, Statistics};
 use super::select::{self, Settings};
+use super::statistics::{Phases, Statistics};
 use super::{DONE, NOT_MET};
+use super::{progress, report};
 use crate::accel::Accelerator;
 #[cfg(feature = "bvh")]
 use crate::accel::bvh::Bvh;
@@ -33,8 +34,8 @@ pub(super) fn run(args: &Render) -> Result<u8> {
 
     // Files to a scene; what the command line says goes over what the file says.
     let start = Instant::now();
-    let busy = report::busy(args, "loading");
-    let outputs = Outputs::check(&args.output, &args.scene)?;
+    let busy = progress::busy(args, "loading");
+    let outputs = Outputs::check(args)?;
     let mut scene = load::load_scene(&args.scene)?;
     select::override_scene(args, &mut scene)?;
     let settings = Settings::resolve(args, &scene)?;
@@ -150,7 +151,7 @@ fn finish<A: Accelerator>(
         batch: Wavefront::DEFAULT_BATCH,
         stop: Some(job.stop),
     };
-    let bar = report::progress(job.args, region.pixels() as u64 * settings.samples_per_pixel);
+    let bar = progress::bar(job.args, region.pixels() as u64 * settings.samples_per_pixel);
     let rendered = render(&tracer, &render_job, &|paths| bar.inc(paths))?;
     bar.finish_and_clear();
     phases.render = rendered.seconds;

@@ -17,5 +17,6 @@ mod mtl;
 mod obj;
 mod scene_file;
 mod scene_file_errors;
+mod statistics;
 mod support;
 mod tidy;
