@@ -12,6 +12,9 @@ const SPINNER: &str = "{spinner} {msg} {elapsed_precise}";
 /// While there is.
 const BAR: &str = "{bar:40} {percent:>3} %  {elapsed_precise} elapsed, {eta_precise} to go";
 
+/// What takes less than this needs no bar.
+const SHORT: Duration = Duration::from_secs(1);
+
 /// A spinner.
 pub(super) fn busy(args: &Render, what: &'static str) -> ProgressBar {
     let spinner = shown(args, None, SPINNER);
@@ -23,6 +26,21 @@ pub(super) fn busy(args: &Render, what: &'static str) -> ProgressBar {
 /// A bar of so many paths.
 pub(super) fn bar(args: &Render, paths: u64) -> ProgressBar {
     shown(args, Some(paths), BAR)
+}
+
+/// Makes `spinner` a bar while `done` of `total` bytes are read, if that takes its time.
+pub(super) fn reading(spinner: &ProgressBar, done: u64, total: u64) {
+    let is_bar = spinner.length().is_some();
+    if done < total && spinner.elapsed() > SHORT {
+        if !is_bar {
+            spinner.set_length(total);
+            spinner.set_style(style(&format!("{{msg}} {BAR}")));
+        }
+        spinner.set_position(done);
+    } else if done >= total && is_bar {
+        spinner.set_style(style(SPINNER));
+        spinner.unset_length();
+    }
 }
 
 fn shown(args: &Render, length: Option<u64>, template: &str) -> ProgressBar {

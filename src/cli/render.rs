@@ -15,7 +15,7 @@ use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::film::Region;
 use crate::filter::FilterSampler;
-use crate::load;
+use crate::load::{self, LoadOptions};
 use crate::render::{RenderJob, Rendered, render, render_layers};
 use crate::sampling::Sampler;
 use crate::trace::{Tracer, Wavefront};
@@ -36,7 +36,11 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     let start = Instant::now();
     let busy = progress::busy(args, "loading");
     let outputs = Outputs::check(args)?;
-    let mut scene = load::load_scene(&args.scene)?;
+    let options = LoadOptions {
+        material: select::override_material(args)?,
+        progress: Some(&|done, total| progress::reading(&busy, done, total)),
+    };
+    let mut scene = load::load_scene_with(&args.scene, options)?;
     select::override_scene(args, &mut scene)?;
     let settings = Settings::resolve(args, &scene)?;
     phases.load = start.elapsed().as_secs_f64();

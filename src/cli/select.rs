@@ -11,7 +11,7 @@ use crate::math::{DVec3, Rgb};
 use crate::render::Aov;
 use crate::sampling::SamplerKind;
 use crate::scene::{
-    self, ColorInput, Environment, Material, MaterialId, Projection, Scene, Surface,
+    self, ColorInput, Environment, Material, Projection, Scene, Surface,
 };
 use crate::world::World;
 use std::path::Path;
@@ -74,7 +74,22 @@ fn named<T: Copy>(name: &str, all: &[(&str, T)], kind: &str) -> Result<T> {
     })
 }
 
-/// Applies `--up`, `--env` and `--override-material`.
+/// The material that `--override-material` gives to every surface.
+///
+/// # Errors
+/// A usage error where it cannot be understood.
+pub(super) fn override_material(args: &Render) -> Result<Option<Material>> {
+    let Some(material) = &args.override_material else { return Ok(None) };
+    let usage = |e| Error::Usage(format!("--override-material {material}: {e}"));
+    let albedo = material
+        .strip_prefix("diffuse:")
+        .ok_or_else(|| usage("expected diffuse:R,G,B".into()))
+        .and_then(|values| rgb(values).map_err(usage))?;
+    let surface = Surface::Lambert { albedo: ColorInput::constant(albedo) };
+    Ok(Some(Material::new("override", surface)))
+}
+
+/// Applies `--up` and `--env`.
 ///
 /// # Errors
 /// A usage error where one cannot be understood; an image error where the environment cannot be read.
@@ -86,18 +101,6 @@ pub(super) fn override_scene(args: &Render, scene: &mut Scene) -> Result<()> {
     }
     if let Some(env) = &args.env {
         scene.environment = Some(environment(env, scene)?);
-    }
-    if let Some(material) = &args.override_material {
-        let usage = |e| Error::Usage(format!("--override-material {material}: {e}"));
-        let albedo = material
-            .strip_prefix("diffuse:")
-            .ok_or_else(|| usage("expected diffuse:R,G,B".into()))
-            .and_then(|values| rgb(values).map_err(usage))?;
-        let surface = Surface::Lambert { albedo: ColorInput::constant(albedo) };
-        scene.materials = vec![Material::new("override", surface)];
-        for placement in &mut scene.placements {
-            placement.material_override = Some(MaterialId(0));
-        }
     }
     Ok(())
 }

@@ -4,6 +4,7 @@
 //! continued with a backslash, comments, tabs, Latin-1 letters. Reads through a fixed buffer and
 //! bounds the length of a line, so memory does not grow with the file. Must not know what a statement means.
 
+use super::progress::{Counted, Progress};
 use crate::error::{Error, Result};
 use crate::image::open_regular;
 use std::borrow::Cow;
@@ -74,6 +75,14 @@ impl Statements<BufReader<File>> {
     /// Opens the regular file `path`.
     pub(super) fn open(path: &Path) -> Result<Self> {
         let file = open_regular(path)?;
+        Ok(Self::new(BufReader::with_capacity(BUFFER_BYTES, file), path))
+    }
+}
+
+impl<'p, 'a> Statements<BufReader<Counted<'p, 'a>>> {
+    /// Opens the regular file `path`; `progress` counts what is read of it.
+    pub(super) fn open_counted(path: &Path, progress: &'p Progress<'a>) -> Result<Self> {
+        let file = Counted { file: open_regular(path)?, progress };
         Ok(Self::new(BufReader::with_capacity(BUFFER_BYTES, file), path))
     }
 }

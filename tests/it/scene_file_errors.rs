@@ -242,7 +242,7 @@ fn files_that_cannot_be_read() {
     let folder = Folder::new();
     rejects("\n[[object]]\nfile = 'nowhere.obj'", 3, &["there is no file", "nowhere.obj"]);
     rejects("\nenvironment.image.file = 'nowhere.png'", 2, &["nowhere.png"]);
-    rejects("[[object]]\nfile = '.'", 2, &["there is no file"]);
+    rejects("[[object]]\nfile = '.'", 2, &["not a regular file but a folder"]);
     let missing = load_scene(&folder.path().join("missing.toml")).unwrap_err();
     assert!(matches!(missing, Error::Io { .. }), "{missing}");
     let missing = load_scene(&folder.path().join("missing.obj")).unwrap_err();
