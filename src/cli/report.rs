@@ -54,10 +54,11 @@ pub(super) fn choices(
     say(
         args,
         &format!(
-            "{} triangles, {} emissive; {width}x{height}, {} spp, {depth}, seed {}",
+            "{} triangles, {} emissive; {width}x{height}, {} spp, effects {}, {depth}, seed {}",
             world.geometry.placed_triangles(),
             world.lights.emitter_count(),
             settings.samples_per_pixel,
+            settings.effects.name(),
             settings.seed
         ),
     );

@@ -64,7 +64,7 @@ mod texture;
 mod transform;
 mod value;
 
-pub use source::did_you_mean;
+pub use source::unknown_name;
 
 use crate::error::{Error, Result};
 use crate::image::open_regular;
