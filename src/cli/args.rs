@@ -72,6 +72,9 @@ pub(super) struct Render {
     /// Path segments: 1 shows emitters only, 2 adds direct light [default: unbounded]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Image")]
     pub(super) max_depth: Option<u32>,
+    /// Effects to simulate: path [default: path]
+    #[arg(long, value_name = "NAME", help_heading = "Image")]
+    pub(super) effects: Option<String>,
     /// Sampler: sobol or independent [default: sobol]
     #[arg(long, value_name = "NAME", help_heading = "Image")]
     pub(super) sampler: Option<String>,

@@ -4,9 +4,11 @@
 
 mod args;
 mod output;
+mod progress;
 mod render;
 mod report;
 mod select;
+mod statistics;
 
 use crate::error::Error;
 use clap::Parser;

@@ -1,5 +1,6 @@
 //! The files that a render writes: formats by ending, checked before the first ray is traced.
 
+use super::args::Render;
 use super::select::Settings;
 use crate::error::{Error, Result};
 use crate::film::Pixels;
@@ -9,7 +10,7 @@ use crate::image::{
 };
 use crate::math::Rgb;
 use crate::render::{Aov, Layers};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Formats that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,18 +27,19 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// `names`, or SCENE.exr and SCENE.png in the current folder when there are none.
+    /// What `-o` names, or SCENE.exr and SCENE.png in the current folder; the statistics' file is written
+    /// elsewhere, but checked here too.
     ///
     /// # Errors
     /// A usage error for an unknown ending; [`Error::Io`] where a file could not be written.
-    pub(super) fn check(names: &[PathBuf], scene: &Path) -> Result<Self> {
+    pub(super) fn check(args: &Render) -> Result<Self> {
         let default;
-        let names = if names.is_empty() {
-            let stem = PathBuf::from(scene.file_stem().unwrap_or("render".as_ref()));
+        let names = if args.output.is_empty() {
+            let stem = PathBuf::from(args.scene.file_stem().unwrap_or("render".as_ref()));
             default = [stem.with_extension("exr"), stem.with_extension("png")];
             &default[..]
         } else {
-            names
+            &args.output
         };
         let files = names
             .iter()
@@ -58,6 +60,7 @@ impl Outputs {
                 Ok((path.clone(), format))
             })
             .collect::<Result<_>>()?;
+        args.stats.as_deref().map_or(Ok(()), check_writable)?;
         Ok(Self { files })
     }
 

@@ -2,9 +2,10 @@
 
 use super::args::{Backend, Render};
 use super::output::{Outputs, Picture};
-use super::report::{self, Phases, Statistics};
 use super::select::{self, Settings};
+use super::statistics::{Phases, Statistics};
 use super::{DONE, NOT_MET};
+use super::{progress, report};
 use crate::accel::Accelerator;
 #[cfg(feature = "bvh")]
 use crate::accel::bvh::Bvh;
@@ -14,7 +15,7 @@ use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::film::Region;
 use crate::filter::FilterSampler;
-use crate::load;
+use crate::load::{self, LoadOptions};
 use crate::render::{RenderJob, Rendered, render, render_layers};
 use crate::sampling::Sampler;
 use crate::trace::{Tracer, Wavefront};
@@ -33,9 +34,13 @@ pub(super) fn run(args: &Render) -> Result<u8> {
 
     // Files to a scene; what the command line says goes over what the file says.
     let start = Instant::now();
-    let busy = report::busy(args, "loading");
-    let outputs = Outputs::check(&args.output, &args.scene)?;
-    let mut scene = load::load_scene(&args.scene)?;
+    let busy = progress::busy(args, "loading");
+    let outputs = Outputs::check(args)?;
+    let options = LoadOptions {
+        material: select::override_material(args)?,
+        progress: Some(&|done, total| progress::reading(&busy, done, total)),
+    };
+    let mut scene = load::load_scene_with(&args.scene, options)?;
     select::override_scene(args, &mut scene)?;
     let settings = Settings::resolve(args, &scene)?;
     phases.load = start.elapsed().as_secs_f64();
@@ -150,7 +155,7 @@ fn finish<A: Accelerator>(
         batch: Wavefront::DEFAULT_BATCH,
         stop: Some(job.stop),
     };
-    let bar = report::progress(job.args, region.pixels() as u64 * settings.samples_per_pixel);
+    let bar = progress::bar(job.args, region.pixels() as u64 * settings.samples_per_pixel);
     let rendered = render(&tracer, &render_job, &|paths| bar.inc(paths))?;
     bar.finish_and_clear();
     phases.render = rendered.seconds;

@@ -1,160 +1,22 @@
-//! What a render says: warnings, choices, progress, the closing summary, statistics and metadata.
+//! What a render says: warnings, choices, the closing summary and metadata.
 //!
-//! Progress and prose go to stderr, JSON to stdout. The header of an image carries reproducible facts
-//! only; what a machine did goes to the statistics.
+//! Prose goes to stderr, JSON to stdout. The header of an image carries reproducible facts only; what a
+//! machine did goes to the statistics.
 
 use super::args::Render;
 use super::render::Job;
 use super::select::Settings;
-use crate::accel::BuildStats;
+use super::statistics::{Statistics, command};
 use crate::error::{Error, Result, Warning};
-use crate::film::{Film, Region};
+use crate::film::Region;
 use crate::geometry::PrimitiveId;
 use crate::image::{Attribute, write_whole};
-use crate::ledger::{Ledger, Stage};
 use crate::math::DVec3;
-use crate::os::peak_rss_bytes;
 use crate::render::Rendered;
 use crate::scene;
 use crate::trace::PixelSample;
 use crate::world::World;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde::Serialize;
 use std::io::Write;
-use std::time::Duration;
-
-/// Wall-clock seconds of each phase.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub(super) struct Phases {
-    pub(super) load: f64,
-    pub(super) build: f64,
-    pub(super) render: f64,
-    pub(super) write: f64,
-    pub(super) total: f64,
-}
-
-/// What a machine did: the JSON of `--stats` and `--json`.
-#[derive(Debug, Serialize)]
-pub(super) struct Statistics {
-    version: &'static str,
-    command: String,
-    host: String,
-    backend: BackendName,
-    triangles: usize,
-    threads: usize,
-    seconds: Phases,
-    memory_bytes: Memory,
-    samples_per_pixel: u64,
-    paths: u64,
-    rays: Rays,
-    rays_per_second: f64,
-    ledger: StageTable,
-    non_finite: u64,
-    fingerprint: String,
-}
-
-#[derive(Debug, Serialize)]
-struct BackendName {
-    name: &'static str,
-    version: String,
-}
-
-#[derive(Debug, Serialize)]
-struct Memory {
-    geometry: usize,
-    acceleration: usize,
-    textures: usize,
-    film: usize,
-    peak_rss: u64,
-}
-
-#[derive(Debug, Serialize)]
-struct Rays {
-    camera: u64,
-    bounce: u64,
-    shadow: u64,
-    total: u64,
-}
-
-#[derive(Debug, Serialize)]
-struct StageTable {
-    stages: Vec<StageRow>,
-}
-
-#[derive(Debug, Serialize)]
-struct StageRow {
-    stage: &'static str,
-    seconds: f64,
-    calls: u64,
-    rays: u64,
-    mean_batch: f64,
-}
-
-impl Statistics {
-    pub(super) fn new(
-        job: &Job<'_>,
-        world: &World,
-        build: BuildStats,
-        rendered: &Rendered,
-        mut seconds: Phases,
-    ) -> Self {
-        seconds.total = seconds.load + seconds.build + seconds.render + seconds.write;
-        let ledger = &rendered.ledger;
-        Self {
-            version: env!("CARGO_PKG_VERSION"),
-            command: command(),
-            host: host(),
-            backend: BackendName { name: job.name.0, version: job.name.1.clone() },
-            triangles: world.geometry.placed_triangles(),
-            threads: match job.args.threads {
-                0 => std::thread::available_parallelism().map_or(1, usize::from),
-                n => n,
-            },
-            seconds,
-            memory_bytes: Memory {
-                geometry: world.geometry.bytes(),
-                acceleration: build.bytes,
-                textures: world.texture_bytes(),
-                film: rendered.film.region().pixels() * Film::BYTES_PER_PIXEL,
-                peak_rss: peak_rss_bytes(),
-            },
-            samples_per_pixel: rendered.film.samples().0,
-            paths: ledger.camera_rays,
-            rays: Rays {
-                camera: ledger.camera_rays,
-                bounce: ledger.bounce_rays,
-                shadow: ledger.shadow_rays,
-                total: ledger.rays(),
-            },
-            rays_per_second: ledger.rays() as f64 / rendered.seconds.max(1e-9),
-            ledger: StageTable { stages: stage_rows(ledger) },
-            non_finite: rendered.non_finite.count,
-            fingerprint: job.fingerprint.clone(),
-        }
-    }
-}
-
-fn stage_rows(ledger: &Ledger) -> Vec<StageRow> {
-    let row = |stage: Stage| {
-        let totals = ledger.stage(stage);
-        StageRow {
-            stage: stage.name(),
-            seconds: totals.seconds,
-            calls: totals.calls,
-            rays: totals.items,
-            mean_batch: totals.items as f64 / totals.calls.max(1) as f64,
-        }
-    };
-    Stage::ALL.into_iter().map(row).collect()
-}
-
-fn command() -> String {
-    std::env::args().collect::<Vec<_>>().join(" ")
-}
-
-fn host() -> String {
-    std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default().trim().to_owned()
-}
 
 /// Writes a line to stderr; a closed stderr is nobody's error.
 fn say(args: &Render, line: &str) {
@@ -192,10 +54,11 @@ pub(super) fn choices(
     say(
         args,
         &format!(
-            "{} triangles, {} emissive; {width}x{height}, {} spp, {depth}, seed {}",
+            "{} triangles, {} emissive; {width}x{height}, {} spp, effects {}, {depth}, seed {}",
             world.geometry.placed_triangles(),
             world.lights.emitter_count(),
             settings.samples_per_pixel,
+            settings.effects.name(),
             settings.seed
         ),
     );
@@ -218,33 +81,6 @@ pub(super) fn choices(
     }
 }
 
-/// Something that moves on a terminal while there is no telling how long it will take.
-pub(super) fn busy(args: &Render, what: &'static str) -> ProgressBar {
-    if args.quiet {
-        return ProgressBar::hidden();
-    }
-    let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(5));
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed_precise}") {
-        spinner.set_style(style);
-    }
-    spinner.set_message(what);
-    spinner.enable_steady_tick(Duration::from_millis(200));
-    spinner
-}
-
-/// A bar with an ETA on stderr when that is a terminal; otherwise nothing.
-pub(super) fn progress(args: &Render, paths: u64) -> ProgressBar {
-    if args.quiet {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::with_draw_target(Some(paths), ProgressDrawTarget::stderr_with_hz(5));
-    let template = "{bar:40} {percent:>3} %  {elapsed_precise} elapsed, {eta_precise} to go";
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style);
-    }
-    bar
-}
-
 /// The closing summary, the statistics file and the JSON.
 pub(super) fn finished(
     job: &Job<'_>,
@@ -254,37 +90,13 @@ pub(super) fn finished(
     exposure: f32,
 ) -> Result<()> {
     let args = job.args;
-    let s = &statistics.seconds;
     if rendered.interrupted {
         let (low, high) = rendered.film.samples();
         say(args, &format!("interrupted: {low} to {high} samples a pixel"));
     }
-    let megabytes = |bytes: u64| bytes as f64 / 1e6;
-    say(
-        args,
-        &format!(
-            "load {:.2} s, build {:.2} s, render {:.2} s, write {:.2} s",
-            s.load, s.build, s.render, s.write
-        ),
-    );
-    say(
-        args,
-        &format!(
-            "{:.2} M rays/s, {} paths, {} rays; {} {}, {} threads; {:.0} MB ({:.0} geometry, {:.0} \
-             acceleration, {:.0} textures, {:.0} film)",
-            statistics.rays_per_second / 1e6,
-            statistics.paths,
-            statistics.rays.total,
-            statistics.backend.name,
-            statistics.backend.version,
-            statistics.threads,
-            megabytes(statistics.memory_bytes.peak_rss),
-            megabytes(statistics.memory_bytes.geometry as u64),
-            megabytes(statistics.memory_bytes.acceleration as u64),
-            megabytes(statistics.memory_bytes.textures as u64),
-            megabytes(statistics.memory_bytes.film as u64),
-        ),
-    );
+    for line in statistics.summary() {
+        say(args, &line);
+    }
     for example in &rendered.non_finite.examples {
         let [x, y] = example.pixel;
         say(

@@ -4,15 +4,13 @@ use super::args::{Render, Up, numbers, rgb};
 use crate::camera::{Camera, frame_points};
 use crate::error::{Error, Result};
 use crate::film::Region;
-use crate::filter::Filter;
+use crate::filter::{Filter, FilterKind};
 use crate::image::ToneMap;
 use crate::load;
 use crate::math::{DVec3, Rgb};
 use crate::render::Aov;
 use crate::sampling::SamplerKind;
-use crate::scene::{
-    self, ColorInput, Environment, Material, MaterialId, Projection, Scene, Surface,
-};
+use crate::scene::{self, ColorInput, Effects, Environment, Material, Projection, Scene, Surface};
 use crate::world::World;
 use std::path::Path;
 
@@ -23,6 +21,7 @@ pub(super) struct Settings {
     pub(super) region: Region,
     pub(super) samples_per_pixel: u64,
     pub(super) max_depth: u32,
+    pub(super) effects: Effects,
     pub(super) sampler: SamplerKind,
     pub(super) seed: u64,
     pub(super) filter: Filter,
@@ -47,6 +46,7 @@ impl Settings {
                 return Err(Error::Usage(format!("--crop reaches beyond the image of {w}x{h}")));
             }
         };
+        let effects = args.effects.as_ref().or(file.effects.as_ref());
         let sampler = args.sampler.as_ref().or(file.sampler.as_ref());
         let tonemap = args.tonemap.as_ref().or(file.tonemap.as_ref());
         let filter = args.filter.as_ref().or(file.filter.as_ref());
@@ -55,26 +55,55 @@ impl Settings {
             region,
             samples_per_pixel: args.spp.or(file.samples_per_pixel).unwrap_or(128),
             max_depth: args.max_depth.or(file.max_depth).unwrap_or(u32::MAX),
-            sampler: sampler
-                .map_or(Ok(SamplerKind::default()), |n| named(n, &SamplerKind::ALL, "sampler"))?,
+            effects: named_or_default(effects, &Effects::ALL, "effects")?,
+            sampler: named_or_default(sampler, &SamplerKind::ALL, "sampler")?,
             seed: args.seed.or(file.seed).unwrap_or(0),
-            filter: Filter::parse(filter.map_or("blackman-harris", String::as_str))?,
+            filter: filter.map_or(Ok(Filter::default()), |text| parse_filter(text))?,
             exposure: args.exposure.or(file.exposure),
-            tonemap: tonemap.map_or(Ok(ToneMap::Agx), |n| ToneMap::parse(n))?,
-            aovs: args.aov.iter().map(|n| named(n, &Aov::ALL, "aov")).collect::<Result<_>>()?,
+            tonemap: named_or_default(tonemap, &ToneMap::ALL, "tone map")?,
+            aovs: args.aov.iter().map(|n| named(n, &Aov::ALL, "AOV")).collect::<Result<_>>()?,
         })
     }
 }
 
-/// The value called `name`, or a usage error that lists the names.
+/// The value called `name`, or a usage error that lists the names and suggests one.
 fn named<T: Copy>(name: &str, all: &[(&str, T)], kind: &str) -> Result<T> {
-    all.iter().find(|(n, _)| *n == name).map(|(_, value)| *value).ok_or_else(|| {
-        let names: Vec<_> = all.iter().map(|(n, _)| *n).collect();
-        Error::Usage(format!("there is no {kind} `{name}`; there are: {}", names.join(", ")))
-    })
+    all.iter()
+        .find(|(n, _)| *n == name)
+        .map(|(_, value)| *value)
+        .ok_or_else(|| Error::Usage(load::unknown_name(kind, name, all.iter().map(|(n, _)| *n))))
 }
 
-/// Applies `--up`, `--env` and `--override-material`.
+fn named_or_default<T>(name: Option<&String>, all: &[(&str, T)], kind: &str) -> Result<T>
+where
+    T: Copy + Default,
+{
+    name.map_or(Ok(T::default()), |name| named(name, all, kind))
+}
+
+/// A filter's name, and its radius if that is said.
+fn parse_filter(description: &str) -> Result<Filter> {
+    let name = description.split(':').next().unwrap_or_default();
+    named(name, &FilterKind::ALL.map(|(name, kind, _)| (name, kind)), "filter")?;
+    Filter::parse(description)
+}
+
+/// The material that `--override-material` gives to every surface.
+///
+/// # Errors
+/// A usage error where it cannot be understood.
+pub(super) fn override_material(args: &Render) -> Result<Option<Material>> {
+    let Some(material) = &args.override_material else { return Ok(None) };
+    let usage = |e| Error::Usage(format!("--override-material {material}: {e}"));
+    let albedo = material
+        .strip_prefix("diffuse:")
+        .ok_or_else(|| usage("expected diffuse:R,G,B".into()))
+        .and_then(|values| rgb(values).map_err(usage))?;
+    let surface = Surface::Lambert { albedo: ColorInput::constant(albedo) };
+    Ok(Some(Material::new("override", surface)))
+}
+
+/// Applies `--up` and `--env`.
 ///
 /// # Errors
 /// A usage error where one cannot be understood; an image error where the environment cannot be read.
@@ -86,18 +115,6 @@ pub(super) fn override_scene(args: &Render, scene: &mut Scene) -> Result<()> {
     }
     if let Some(env) = &args.env {
         scene.environment = Some(environment(env, scene)?);
-    }
-    if let Some(material) = &args.override_material {
-        let usage = |e| Error::Usage(format!("--override-material {material}: {e}"));
-        let albedo = material
-            .strip_prefix("diffuse:")
-            .ok_or_else(|| usage("expected diffuse:R,G,B".into()))
-            .and_then(|values| rgb(values).map_err(usage))?;
-        let surface = Surface::Lambert { albedo: ColorInput::constant(albedo) };
-        scene.materials = vec![Material::new("override", surface)];
-        for placement in &mut scene.placements {
-            placement.material_override = Some(MaterialId(0));
-        }
     }
     Ok(())
 }

@@ -4,8 +4,11 @@
 //! The same image gives the same bytes, in any process and on any number of threads.
 
 use super::atomic::write_whole;
-use super::read::{MAX_BYTES, MAX_SIDE, open, too_large};
+use super::open::open_regular;
+use super::read::{MAX_BYTES, MAX_SIDE, too_large};
 use crate::error::{Error, Result};
+use exr::block::writer::ParallelBlocksCompressor;
+use exr::image::write::layers::{LayersWriter as _, WritableLayers as _};
 use exr::meta::attribute::Chromaticities;
 use exr::prelude as format;
 use exr::prelude::{ReadChannels as _, ReadLayers as _, WritableImage as _};
@@ -132,12 +135,35 @@ pub fn write_exr(path: &Path, image: ExrImage) -> Result<()> {
     }
 
     write_whole(path, |out| {
-        file.write().to_buffered(&mut *out).map_err(|error| match error {
+        encode(&file, &mut *out).map_err(|error| match error {
             format::Error::Io(error) => error,
             error => io::Error::other(error.to_string()),
         })?;
         out.flush()?;
         sort_attributes(out.get_mut())
+    })
+}
+
+/// The one part of a file that is written.
+type FlatLayer = format::Layer<format::AnyChannels<format::FlatSamples>>;
+
+/// Compresses on as many threads as the caller's pool has. By itself the crate would take one for each core;
+/// on one thread alone a picture with every layer would take seconds longer.
+fn encode(file: &format::Image<FlatLayer>, out: impl Write + Seek) -> format::Result<()> {
+    let headers = file.write().infer_meta_data();
+    let layers = file.layer_data.create_writer(&headers);
+    exr::block::write(out, headers, true, |meta, chunks| {
+        let blocks = meta.collect_ordered_block_data(|index| {
+            layers.extract_uncompressed_block(&meta.headers, index)
+        });
+        let threads = rayon::current_num_threads();
+        let pool = || rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let mut compressor = ParallelBlocksCompressor::new_with_thread_pool(&meta, chunks, pool)
+            .ok_or_else(|| io::Error::other("cannot start a thread"))?;
+        for (index, block) in blocks {
+            compressor.add_block_to_compression_queue(index, block)?;
+        }
+        Ok(())
     })
 }
 
@@ -186,7 +212,7 @@ fn sort_attributes(file: &mut (impl Read + Write + Seek)) -> io::Result<()> {
 /// # Errors
 /// When the file cannot be read, is damaged, holds deep or subsampled data, or is too large.
 pub fn read_exr_channels(path: &Path) -> Result<ExrImage> {
-    let file = open(path)?;
+    let file = io::BufReader::new(open_regular(path)?);
     // The decoder of one compression (B44) can overflow on damaged data, which panics where arithmetic is
     // checked. In one thread the panic can be caught; in the crate's thread pool it would abort.
     catch_unwind(AssertUnwindSafe(|| decode(path, file)))

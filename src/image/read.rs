@@ -4,11 +4,11 @@
 //! extension. Files are not trusted: sizes are checked before memory is taken, and damage is an error.
 
 use super::exr;
+use super::open::open_regular;
 use super::{Image, Pixels, srgb};
 use crate::error::{Error, Result};
 use crate::math::Rgb;
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits};
-use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
@@ -34,7 +34,7 @@ pub enum ColorSpace {
 /// # Errors
 /// When the file cannot be read, is no image, is damaged, or exceeds [`MAX_SIDE`] or [`MAX_BYTES`].
 pub fn read(path: &Path, color_space: ColorSpace) -> Result<Image> {
-    let mut file = open(path)?;
+    let mut file = BufReader::new(open_regular(path)?);
     let head = file.fill_buf().map_err(|e| Error::io(path, "read", e))?;
     if head.starts_with(&exr::MAGIC) {
         return from_exr(path);
@@ -55,15 +55,6 @@ pub fn read(path: &Path, color_space: ColorSpace) -> Result<Image> {
     let decoded = reader.decode().map_err(|error| decode_error(path, error))?;
     from_decoded(decoded, color_space)
         .ok_or_else(|| Error::image(path, "the image has no pixels; export it again"))
-}
-
-/// The regular file `path`, behind a buffer. A pipe or a device could block for ever, so it is refused.
-pub(super) fn open(path: &Path) -> Result<BufReader<File>> {
-    let failed = |source| Error::io(path, "read", source);
-    if !path.metadata().map_err(failed)?.is_file() {
-        return Err(Error::image(path, "not a regular file; name an image file"));
-    }
-    Ok(BufReader::new(File::open(path).map_err(failed)?))
 }
 
 /// What a file that is too large is told.

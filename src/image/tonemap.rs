@@ -4,7 +4,6 @@
 //! dithering would hide from a viewer what the numbers are.
 
 use super::srgb;
-use crate::error::{Error, Result};
 use crate::math::{Rgb, fun};
 use rayon::prelude::*;
 use std::f32::consts::LN_2;
@@ -16,9 +15,9 @@ pub enum ToneMap {
     /// Clipped at 1: exact below.
     None,
     /// A curve like that of ACES, for each channel.
-    #[default]
     Aces,
     /// A sigmoid of log exposure that lets bright colours go to white, after Troy Sobotka's AgX.
+    #[default]
     Agx,
     /// `L / (1 + L)` on luminance.
     Reinhard,
@@ -32,18 +31,6 @@ impl ToneMap {
         ("agx", Self::Agx),
         ("reinhard", Self::Reinhard),
     ];
-
-    /// The tone map called `name`.
-    ///
-    /// # Errors
-    /// A usage error that lists the names.
-    pub fn parse(name: &str) -> Result<Self> {
-        let found = Self::ALL.iter().find(|(known, _)| *known == name);
-        found.map(|&(_, tonemap)| tonemap).ok_or_else(|| {
-            let names = Self::ALL.map(|(name, _)| name).join(", ");
-            Error::Usage(format!("there is no tone map `{name}`; there are: {names}"))
-        })
-    }
 
     /// Display-linear colour in [0, 1] of an exposed colour. Negative channels and NaN count as 0.
     pub fn apply(self, exposed: Rgb) -> Rgb {
@@ -138,15 +125,6 @@ pub fn auto_exposure(pixels: impl IntoIterator<Item = Rgb>) -> f32 {
 mod tests {
     use super::*;
     use crate::sampling::CounterRng;
-
-    #[test]
-    fn names_are_parsed() {
-        for (name, tonemap) in ToneMap::ALL {
-            assert_eq!(ToneMap::parse(name).unwrap(), tonemap);
-        }
-        let message = ToneMap::parse("filmic").unwrap_err().to_string();
-        assert!(message.contains("none, aces, agx, reinhard"), "{message}");
-    }
 
     /// Every channel of every colour grows with exposure, from 0 at black to at most 1.
     #[test]

@@ -4,7 +4,9 @@
 //! continued with a backslash, comments, tabs, Latin-1 letters. Reads through a fixed buffer and
 //! bounds the length of a line, so memory does not grow with the file. Must not know what a statement means.
 
+use super::progress::{Counted, Progress};
 use crate::error::{Error, Result};
+use crate::image::open_regular;
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind};
@@ -70,14 +72,17 @@ pub(super) struct Statements<R> {
 }
 
 impl Statements<BufReader<File>> {
-    /// Opens `path`, which must be a file.
+    /// Opens the regular file `path`.
     pub(super) fn open(path: &Path) -> Result<Self> {
-        let io = |source| Error::io(path, "read", source);
-        let file = File::open(path).map_err(io)?;
-        if file.metadata().map_err(io)?.is_dir() {
-            let advice = "this is a folder; name a file in it";
-            return Err(io(std::io::Error::new(ErrorKind::IsADirectory, advice)));
-        }
+        let file = open_regular(path)?;
+        Ok(Self::new(BufReader::with_capacity(BUFFER_BYTES, file), path))
+    }
+}
+
+impl<'p, 'a> Statements<BufReader<Counted<'p, 'a>>> {
+    /// Opens the regular file `path`; `progress` counts what is read of it.
+    pub(super) fn open_counted(path: &Path, progress: &'p Progress<'a>) -> Result<Self> {
+        let file = Counted { file: open_regular(path)?, progress };
         Ok(Self::new(BufReader::with_capacity(BUFFER_BYTES, file), path))
     }
 }

@@ -19,6 +19,7 @@ mod obj_polygon;
 mod obj_read;
 mod obj_scan;
 mod paths;
+mod progress;
 mod scene_file;
 mod warning_list;
 
@@ -28,4 +29,4 @@ pub use fingerprint::fingerprint;
 pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;
 pub use obj::{LoadedModel, load_obj};
-pub use scene_file::{did_you_mean, load_scene};
+pub use scene_file::{LoadOptions, load_scene, load_scene_with, unknown_name};

@@ -10,6 +10,7 @@ use super::obj_mesh::{build_meshes, snapped_origin};
 use super::obj_read::{ObjFile, read_obj};
 use super::obj_scan::{Named, Scan};
 use super::paths::{Found, find_file};
+use super::progress::Progress;
 use super::warning_list::WarningList;
 use crate::error::{Error, Location, Result, Warning};
 use crate::math::DVec3;
@@ -38,7 +39,25 @@ pub struct LoadedModel {
 /// # Errors
 /// When the file cannot be read, is not text, or has no face that can be rendered.
 pub fn load_obj(path: &Path) -> Result<LoadedModel> {
-    let ObjFile { groups, mut scan } = read_obj(path)?;
+    load_model(path, Materials::Read, &Progress::default())
+}
+
+/// What is done about the materials of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Materials {
+    /// Their libraries are read.
+    Read,
+    /// Others take their place, so only their names are wanted.
+    Named,
+}
+
+/// [`load_obj`], as `progress` is told; materials that are only named are grey.
+pub(super) fn load_model(
+    path: &Path,
+    materials: Materials,
+    progress: &Progress,
+) -> Result<LoadedModel> {
+    let ObjFile { groups, mut scan } = read_obj(path, progress)?;
     let origin = snapped_origin(scan.first_vertex.map_or(DVec3::ZERO, DVec3::from_array));
     let mut warnings = std::mem::take(&mut scan.warnings);
     let meshes = build_meshes(path, groups, &scan.faces, origin, &mut warnings)?;
@@ -47,14 +66,14 @@ pub fn load_obj(path: &Path) -> Result<LoadedModel> {
     }
 
     let mut inputs = vec![path.to_path_buf()];
-    let libraries = Libraries::read(path, &scan.libraries.list, &mut inputs, &mut warnings);
     let mut images = ImageTable::new();
-    let materials = scan
-        .materials
-        .list
-        .iter()
-        .map(|used| libraries.material(path, used, &mut images, &mut warnings))
-        .collect();
+    let used = scan.materials.list.iter();
+    let materials = if materials == Materials::Read {
+        let libraries = Libraries::read(path, &scan.libraries.list, &mut inputs, &mut warnings);
+        used.map(|used| libraries.material(path, used, &mut images, &mut warnings)).collect()
+    } else {
+        used.map(|used| grey(path, used)).collect()
+    };
     Ok(LoadedModel {
         model: Model {
             name: path.display().to_string(),
@@ -157,7 +176,7 @@ impl Libraries {
         warnings: &mut WarningList,
     ) -> Material {
         if used.name.is_empty() {
-            return Material::default_grey();
+            return grey(model, used);
         }
         // A comment may follow the name; but '#' may also be part of it.
         let bare = used.name.split(" #").next().unwrap_or_default().trim_end();
@@ -167,12 +186,20 @@ impl Libraries {
             warnings.add("materials missing", location.clone(), || {
                 format!("material {:?} is in no library of this model; it is grey", used.name)
             });
-            let grey = Material::default_grey();
-            return Material { name: used.name.clone(), location: Some(location), ..grey };
+            return grey(model, used);
         };
         let (path, records) = &self.files[file];
         Context { library: path, images, warnings }.material(&records[record])
     }
+}
+
+/// What stands for a material of `model` of which no more than the name is known, if that.
+fn grey(model: &Path, used: &Named) -> Material {
+    if used.name.is_empty() {
+        return Material::default_grey();
+    }
+    let location = Some(Location::new(model, used.line));
+    Material { name: used.name.clone(), location, ..Material::default_grey() }
 }
 
 /// The files that one `mtllib` at `location` names: one file whose name may have spaces, or several.

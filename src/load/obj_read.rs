@@ -8,6 +8,7 @@
 use super::line_filter::Statements;
 use super::obj_filter::ObjFilter;
 use super::obj_scan::{Attributes, Scan};
+use super::progress::Progress;
 use crate::error::{Error, Result};
 use std::path::Path;
 
@@ -39,12 +40,12 @@ pub(super) struct ObjFile {
     pub(super) scan: Scan,
 }
 
-/// Reads the file at `path`.
+/// Reads the file at `path`, as `progress` is told.
 ///
 /// # Errors
 /// When it cannot be read, or is not text.
-pub(super) fn read_obj(path: &Path) -> Result<ObjFile> {
-    let mut filter = ObjFilter::new(Statements::open(path)?);
+pub(super) fn read_obj(path: &Path, progress: &Progress) -> Result<ObjFile> {
+    let mut filter = ObjFilter::new(Statements::open_counted(path, progress)?);
     // Polygons as they are, one index for all attributes.
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
     let loaded = tobj::load_obj_buf(&mut filter, &options, |_| Ok(Default::default()));

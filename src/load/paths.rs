@@ -20,14 +20,19 @@ pub(super) enum Found {
 pub(super) fn find_file(folder: &Path, name: &str) -> Found {
     let name = name.trim().trim_matches('"').replace('\\', "/");
     let named = folder.join(&name);
-    if named.is_file() {
+    if is_there(&named) {
         return Found::AsNamed(named);
     }
     let bare = name.rsplit('/').next().map(PathBuf::from).unwrap_or_default();
     let anywhere = find_ignoring_case(folder, Path::new(&name))
         .or_else(|| find_ignoring_case(folder, &bare))
-        .filter(|path| path.is_file());
+        .filter(|path| is_there(path));
     anywhere.map_or(Found::Missing(named), Found::Elsewhere)
+}
+
+/// Whether there is something to open; whoever opens it says why it cannot be read.
+fn is_there(path: &Path) -> bool {
+    path.exists() && !path.is_dir()
 }
 
 /// Follows `name` from `folder`, comparing without case where there is no exact match.

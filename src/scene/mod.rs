@@ -4,11 +4,13 @@
 //! a file (that is `load`) or computes anything about light (that is `world` and after).
 
 mod camera;
+mod effects;
 mod light;
 mod material;
 mod mesh;
 
 pub use camera::{Camera, Projection};
+pub use effects::Effects;
 pub use light::{Environment, Light};
 pub use material::{
     Channel, ColorInput, Emission, Material, NormalInput, ScalarInput, Surface, TextureReference,
@@ -125,6 +127,8 @@ pub struct SceneSettings {
     pub samples_per_pixel: Option<u64>,
     /// Path segments; 1 shows emitters only.
     pub max_depth: Option<u32>,
+    /// Name of the set of effects.
+    pub effects: Option<String>,
     /// Name of the sampler.
     pub sampler: Option<String>,
     /// Random seed.

@@ -1,6 +1,11 @@
-//! Image files: what is written comes back, damage is an error, and a file is whole or not there.
+//! Image files: what is written comes back, and only images are read and files replaced.
+//!
+//! `damaged` holds what reading survives, `limited` what happens when memory or the disk runs out.
 
 #![expect(clippy::unwrap_used, reason = "a test may unwrap, and so may its helpers")]
+
+mod damaged;
+mod limited;
 
 use glint::image::{
     Attribute, ColorSpace, ExrImage, Pixels, Samples, read, read_exr_channels, write_exr,
@@ -8,10 +13,8 @@ use glint::image::{
 };
 use glint::math::Rgb;
 use glint::sampling::CounterRng;
-use image::{DynamicImage, ImageFormat};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 use tempfile::TempDir;
 
 /// `n` colours over twenty powers of two.
@@ -204,77 +207,6 @@ fn hdr_comes_back_within_its_precision() {
     assert_eq!(read(&path, ColorSpace::Srgb).unwrap(), image);
 }
 
-/// A small valid file of each format that is read.
-fn samples(dir: &Path) -> Vec<PathBuf> {
-    let rgb: Vec<u8> = (0..16 * 16 * 3).map(|i| (i * 7) as u8).collect();
-    let picture = image::RgbImage::from_raw(16, 16, rgb).unwrap();
-    let picture = DynamicImage::ImageRgb8(picture);
-    let mut paths = Vec::new();
-    for (name, format) in [
-        ("a.png", ImageFormat::Png),
-        ("a.jpg", ImageFormat::Jpeg),
-        ("a.tga", ImageFormat::Tga),
-        ("a.bmp", ImageFormat::Bmp),
-    ] {
-        picture.save_with_format(dir.join(name), format).unwrap();
-        paths.push(dir.join(name));
-    }
-    write_hdr(&dir.join("a.hdr"), &radiance(256), 16, 16).unwrap();
-    write_exr(&dir.join("a.exr"), layered()).unwrap();
-    paths.extend([dir.join("a.hdr"), dir.join("a.exr")]);
-    // B44 decoding can overflow on damaged data.
-    let half = |x: usize, y: usize| {
-        let value = exr::prelude::f16::from_f32((x * y) as f32);
-        (value, value, value)
-    };
-    let mut b44 = exr::prelude::Image::from_channels(
-        (32, 32),
-        exr::prelude::SpecificChannels::rgb(move |p: exr::prelude::Vec2<usize>| half(p.0, p.1)),
-    );
-    b44.layer_data.encoding = exr::prelude::Encoding {
-        compression: exr::prelude::Compression::B44,
-        ..exr::prelude::Encoding::SMALL_LOSSLESS
-    };
-    exr::prelude::WritableImage::write(&b44).to_file(dir.join("b44.exr")).unwrap();
-    paths.push(dir.join("b44.exr"));
-    paths
-}
-
-#[test]
-fn damaged_files_are_errors() {
-    let dir = TempDir::new().unwrap();
-    let damaged = dir.path().join("damaged");
-    for path in samples(dir.path()) {
-        read(&path, ColorSpace::Srgb).unwrap();
-        let good = fs::read(&path).unwrap();
-        let damaged = damaged.with_extension(path.extension().unwrap());
-        let read_bytes = |bytes: &[u8]| {
-            fs::write(&damaged, bytes).unwrap();
-            read(&damaged, ColorSpace::Srgb)
-        };
-        // Cut short: always an error that names the file and what to do.
-        for length in [0, 1, 4, 10, 18, 30, good.len() / 4, good.len() / 2] {
-            let result = read_bytes(&good[..length]);
-            let message =
-                result.expect_err(&format!("{} cut to {length}", path.display())).to_string();
-            assert!(message.contains("damaged.") && message.contains(';'), "{message}");
-        }
-        // Junk behind a good start, and single wrong bytes: an image or an error.
-        let mut rng = CounterRng::new(0);
-        for _ in 0..400 {
-            let mut bytes = good.clone();
-            let at = (rng.unit() * bytes.len() as f32) as usize;
-            if rng.unit() < 0.1 {
-                bytes[at..].fill_with(|| (rng.unit() * 256.0) as u8);
-            } else {
-                bytes[at] = (rng.unit() * 256.0) as u8;
-            }
-            let _ = read_bytes(&bytes);
-        }
-        assert!(read_bytes(&vec![b'x'; 1000]).is_err());
-    }
-}
-
 #[test]
 fn what_is_no_image_file_is_refused() {
     let dir = TempDir::new().unwrap();
@@ -288,135 +220,6 @@ fn what_is_no_image_file_is_refused() {
     let gif = dir.path().join("a.png");
     fs::write(&gif, b"GIF89a____________").unwrap();
     assert!(message(&gif).contains("convert it to png"));
-}
-
-/// A PNG that claims `width` x `height` RGBA pixels and holds none.
-fn forged_png(width: u32, height: u32) -> Vec<u8> {
-    let mut header = b"IHDR".to_vec();
-    header.extend([width.to_be_bytes(), height.to_be_bytes()].concat());
-    header.extend([8, 6, 0, 0, 0]);
-    // CRC-32 of ISO 3309, bit by bit.
-    let crc = !header.iter().fold(!0_u32, |crc, &byte| {
-        (0..8).fold(
-            crc ^ u32::from(byte),
-            |c, _| if c & 1 == 1 { c >> 1 ^ 0xedb8_8320 } else { c >> 1 },
-        )
-    });
-    let mut file = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
-    file.extend(header);
-    file.extend(crc.to_be_bytes());
-    file
-}
-
-/// Files that claim more than the limits, of a side or in all.
-fn forgeries(dir: &Path) -> Vec<PathBuf> {
-    let patch =
-        |bytes: &mut [u8], at: usize, value: [u8; 4]| bytes[at..at + 4].copy_from_slice(&value);
-    let paths = samples(dir);
-    for path in &paths {
-        let mut bytes = fs::read(path).unwrap();
-        match path.extension().unwrap().to_str().unwrap() {
-            "png" => bytes = forged_png(60_000, 60_000),
-            "bmp" => {
-                patch(&mut bytes, 18, 60_000_u32.to_le_bytes());
-                patch(&mut bytes, 22, 60_000_u32.to_le_bytes());
-            }
-            "tga" => patch(&mut bytes, 12, [0xff; 4]),
-            "jpg" => {
-                let frame = bytes.windows(2).position(|w| w == [0xff, 0xc0]).unwrap();
-                patch(&mut bytes, frame + 5, [0xff; 4]);
-            }
-            "hdr" => bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 30000 +X 30000\n".to_vec(),
-            _ => {
-                // The last column and row, and the number of blocks of 16 or (B44) 32 rows.
-                let lines = if path.ends_with("b44.exr") { 32 } else { 16 };
-                let mut set = |name: &[u8], offset: usize, value: u32| {
-                    let start = bytes.windows(name.len()).position(|w| w == name).unwrap();
-                    patch(&mut bytes, start + name.len() + offset, value.to_le_bytes());
-                };
-                set(b"dataWindow\0box2i\0", 12, 31_999);
-                set(b"dataWindow\0box2i\0", 16, 31_999);
-                set(b"chunkCount\0int\0", 4, 32_000 / lines);
-            }
-        }
-        fs::write(path, bytes).unwrap();
-    }
-    paths
-}
-
-/// Runs the test `name` of this binary by itself, in `dir`, after the shell command `limit`.
-fn run_limited(name: &str, limit: &str, dir: &Path) {
-    let output = Command::new("sh")
-        .args([
-            "-c",
-            &format!("{limit} && exec \"$0\" --exact {name} --nocapture --test-threads 1"),
-        ])
-        .arg(std::env::current_exe().unwrap())
-        .env("GLINT_TEST_DIR", dir)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && text.contains("1 passed"), "{text}");
-}
-
-/// The folder that [`run_limited`] gave; a test that has none does nothing.
-fn limited_dir() -> Option<PathBuf> {
-    std::env::var_os("GLINT_TEST_DIR").map(PathBuf::from)
-}
-
-/// With a gigabyte of address space, an attempt to hold the pixels would abort the process.
-#[test]
-fn forged_sizes_are_refused_without_taking_memory() {
-    let dir = TempDir::new().unwrap();
-    forgeries(dir.path());
-    run_limited("image::limited_memory", "ulimit -v 1048576", dir.path());
-}
-
-#[test]
-fn limited_memory() {
-    let Some(dir) = limited_dir() else { return };
-    for entry in fs::read_dir(dir).unwrap() {
-        let path = entry.unwrap().path();
-        let message = read(&path, ColorSpace::Srgb).unwrap_err().to_string();
-        assert!(message.contains("scale it down"), "{message}");
-    }
-}
-
-/// A disk that is full after 8 KiB: no file, no litter, an error; and an old file stays.
-#[test]
-fn a_full_disk_leaves_no_file() {
-    let dir = TempDir::new().unwrap();
-    fs::write(dir.path().join("old.exr"), "old").unwrap();
-    // Without the trap the system would kill the process instead of failing the write.
-    let limit = "trap '' XFSZ && ulimit -f 16";
-    run_limited("image::limited_disk", limit, dir.path());
-}
-
-#[test]
-fn limited_disk() {
-    let Some(dir) = limited_dir() else { return };
-    let n = 100;
-    let pixels = radiance(n * n);
-    let bytes: Vec<[u8; 3]> =
-        pixels.iter().map(|p| p.to_array().map(|c| c.to_bits() as u8)).collect();
-    let exr = || {
-        let mut image = ExrImage::new(n as u32, n as u32);
-        image.add_layer("", ["R", "G", "B"], pixels.iter().map(|p| p.to_array()));
-        image
-    };
-    let results = [
-        write_png(&dir.join("a.png"), &bytes, n as u32, n as u32),
-        write_hdr(&dir.join("a.hdr"), &pixels, n as u32, n as u32),
-        write_exr(&dir.join("a.exr"), exr()),
-        write_exr(&dir.join("old.exr"), exr()),
-    ];
-    for result in results {
-        let message = result.unwrap_err().to_string();
-        assert!(message.contains("cannot write: File too large"), "{message}");
-    }
-    let left: Vec<_> = fs::read_dir(&dir).unwrap().map(|e| e.unwrap().file_name()).collect();
-    assert_eq!(left, ["old.exr"]);
-    assert_eq!(fs::read(dir.join("old.exr")).unwrap(), b"old");
 }
 
 #[test]

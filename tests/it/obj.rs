@@ -337,7 +337,7 @@ fn files_without_a_surface_are_errors() {
     let folder = tempfile::tempdir().unwrap();
     let of = |path: &Path| load_obj(path).unwrap_err();
     assert!(matches!(of(&folder.path().join("none.obj")), Error::Io { .. }));
-    assert!(of(folder.path()).to_string().contains("this is a folder; name a file in it"));
+    assert!(of(folder.path()).to_string().contains("not a regular file but a folder; name a file"));
 }
 
 #[test]

@@ -5,14 +5,16 @@ use super::place::{self, PlacedFile};
 use super::settings;
 use super::source::Source;
 use super::texture::Textures;
-use super::{Document, Up};
+use super::{Document, LoadOptions, Up};
 use crate::error::Result;
-use crate::load;
+use crate::image::open_regular;
 use crate::load::ImageTable;
+use crate::load::obj::{Materials, load_model};
+use crate::load::progress::Progress;
 use crate::math::DVec3;
 use crate::scene::{MaterialId, ModelId, Placement, Scene};
 use std::collections::{BTreeSet, HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::Path;
 use toml::Spanned;
 
 /// The scene that `document` describes.
@@ -20,7 +22,7 @@ use toml::Spanned;
 /// # Errors
 /// Everything in the document that contradicts itself, and models and an environment image that cannot
 /// be read.
-pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
+pub(super) fn assemble(document: &Document, source: Source, options: LoadOptions) -> Result<Scene> {
     // What the document says by itself.
     let (placed, unplaced) = place::flatten(document, source)?;
     let mut overrides = Overrides::new(document, source)?;
@@ -37,27 +39,35 @@ pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
     scene.warnings.extend(unplaced.into_iter().map(|name| {
         source.warning(name.span(), format!("model `{}` is never placed", name.get_ref()))
     }));
-    let used = placed.iter().filter_map(|file| file.material).chain(overrides.materials());
-    let library = add_library(document, source, &used.collect(), &mut builder)?;
+    let only = options.material.map(|material| builder.add_material(material));
+    let mut used = HashSet::new();
+    if only.is_none() {
+        used.extend(placed.iter().filter_map(|file| file.material).chain(overrides.materials()));
+    }
+    let library = add_library(document, source, &used, &mut builder)?;
+    let material_of = |name| only.or_else(|| library.get(name).copied());
 
     // Models, each file once.
-    let mut models: HashMap<PathBuf, ModelId> = HashMap::new();
+    let files = files_to_read(&placed, source)?;
+    let progress = Progress::of(files.keys().map(|file| source.resolve(file)), options.progress);
+    let mut models: HashMap<&str, ModelId> = HashMap::new();
     for PlacedFile { file, world_from_object, material } in placed {
-        let path = source.resolve(file.get_ref());
-        let model = match models.get(&path) {
+        let file = file.get_ref().as_str();
+        let material_override = material.and_then(material_of);
+        let model = match models.get(file) {
             Some(&model) => model,
             None => {
-                if !path.is_file() {
-                    let message = format!("there is no file {}", path.display());
-                    return Err(source.error(file.span(), message));
-                }
-                let loaded = load::load_obj(&path)?;
-                let model =
-                    builder.add_model(loaded, |name| Some(library[overrides.replacement(name)?]));
-                *models.entry(path).or_insert(model)
+                // Where none of its own materials can be seen, what is seen first takes their place.
+                let instead = if files[file] { only } else { material_override };
+                let materials = if instead.is_some() { Materials::Named } else { Materials::Read };
+                let loaded = load_model(&source.resolve(file), materials, &progress)?;
+                let model = builder.add_model(loaded, |name| {
+                    let replacement = overrides.replacement(name);
+                    instead.or_else(|| material_of(replacement?))
+                });
+                *models.entry(file).or_insert(model)
             }
         };
-        let material_override = material.map(|name| library[name]);
         builder.scene.placements.push(Placement { model, world_from_object, material_override });
     }
     overrides.check_all_met(source)?;
@@ -68,6 +78,29 @@ pub(super) fn assemble(document: &Document, source: Source) -> Result<Scene> {
         scene.environment = Some(environment);
     }
     Ok(scene)
+}
+
+/// The files that are placed, and of each whether it is without a material from the scene file somewhere.
+///
+/// # Errors
+/// For one that is not there or no regular file, before the first is read.
+fn files_to_read<'d>(placed: &[PlacedFile<'d>], source: Source) -> Result<HashMap<&'d str, bool>> {
+    let mut files = HashMap::new();
+    for PlacedFile { file, material, .. } in placed {
+        let name = file.get_ref().as_str();
+        if !files.contains_key(name) {
+            check_file(&source.resolve(name)).map_err(|e| source.error(file.span(), e))?;
+        }
+        *files.entry(name).or_insert(false) |= material.is_none();
+    }
+    Ok(files)
+}
+
+fn check_file(path: &Path) -> std::result::Result<(), String> {
+    if !path.exists() {
+        return Err(format!("there is no file {}", path.display()));
+    }
+    open_regular(path).map(drop).map_err(|error| error.to_string())
 }
 
 /// Adds the materials of the document that are `used`, and checks the others too. Ids by name.

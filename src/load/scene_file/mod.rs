@@ -64,16 +64,19 @@ mod texture;
 mod transform;
 mod value;
 
-pub use source::did_you_mean;
+pub use source::unknown_name;
 
 use crate::error::{Error, Result};
-use crate::load::load_obj;
+use crate::image::open_regular;
+use crate::load::obj::{Materials, load_model};
+use crate::load::progress::Progress;
 use crate::math::DAffine3;
-use crate::scene::{Placement, Scene};
+use crate::scene::{Material, Placement, Scene};
 use builder::Builder;
 use named::Named;
 use serde::Deserialize;
 use source::Source;
+use std::io::Read;
 use std::path::Path;
 use toml::Spanned;
 
@@ -116,17 +119,37 @@ impl Document {
     }
 }
 
+/// What loading is told besides the file.
+#[derive(Default)]
+pub struct LoadOptions<'a> {
+    /// The material of every surface: no other material is looked at, nor the files that it names.
+    pub material: Option<Material>,
+    /// Told of bytes read and bytes in all while models are read.
+    pub progress: Option<&'a dyn Fn(u64, u64)>,
+}
+
+/// A scene file larger than this is a mistake: a million transforms take a fifth of it.
+const MAX_BYTES: u64 = 1 << 28;
+
+/// [`load_scene_with`] no options.
+///
+/// # Errors
+/// As there.
+pub fn load_scene(path: &Path) -> Result<Scene> {
+    load_scene_with(path, LoadOptions::default())
+}
+
 /// Reads the scene `path` with everything that it names: a `.toml` scene file, or an `.obj` model, which
 /// is placed once, without camera and lights.
 ///
 /// # Errors
 /// When the scene file is wrong, or a model that it places cannot be read. Smaller faults, such as
 /// textures that cannot be read, are [`Scene::warnings`].
-pub fn load_scene(path: &Path) -> Result<Scene> {
+pub fn load_scene_with(path: &Path, options: LoadOptions) -> Result<Scene> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match extension.as_str() {
-        "toml" => load_scene_file(path),
-        "obj" => load_model_alone(path),
+        "toml" => load_scene_file(path, options),
+        "obj" => load_model_alone(path, options),
         _ => Err(Error::Usage(format!(
             "{}: a scene is a .toml or an .obj file; rename or convert it",
             path.display()
@@ -134,8 +157,14 @@ pub fn load_scene(path: &Path) -> Result<Scene> {
     }
 }
 
-fn load_scene_file(path: &Path) -> Result<Scene> {
-    let bytes = std::fs::read(path).map_err(|error| Error::io(path, "read", error))?;
+fn load_scene_file(path: &Path, options: LoadOptions) -> Result<Scene> {
+    let mut bytes = Vec::new();
+    let mut file = open_regular(path)?.take(MAX_BYTES + 1);
+    file.read_to_end(&mut bytes).map_err(|error| Error::io(path, "read", error))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        let (name, limit) = (path.display(), MAX_BYTES >> 20);
+        return Err(Error::Scene(format!("{name}: more than {limit} MiB; is it a scene file?")));
+    }
     let text = match std::str::from_utf8(&bytes) {
         Ok(text) => text,
         Err(error) => {
@@ -147,14 +176,17 @@ fn load_scene_file(path: &Path) -> Result<Scene> {
     };
     let source = Source::new(path, text);
     let document: Document = toml::from_str(text).map_err(|error| source.toml_error(&error))?;
-    let mut scene = assemble::assemble(&document, source)?;
+    let mut scene = assemble::assemble(&document, source, options)?;
     scene.inputs.insert(0, path.to_path_buf());
     Ok(scene)
 }
 
-fn load_model_alone(path: &Path) -> Result<Scene> {
+fn load_model_alone(path: &Path, options: LoadOptions) -> Result<Scene> {
     let mut builder = Builder::default();
-    let model = builder.add_model(load_obj(path)?, |_| None);
+    let progress = Progress::of([path], options.progress);
+    let only = options.material.map(|material| builder.add_material(material));
+    let materials = if only.is_some() { Materials::Named } else { Materials::Read };
+    let model = builder.add_model(load_model(path, materials, &progress)?, |_| only);
     let world_from_object = DAffine3::IDENTITY;
     builder.scene.placements.push(Placement { model, world_from_object, material_override: None });
     Ok(builder.finish())

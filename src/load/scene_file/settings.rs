@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::filter::Filter;
 use crate::image::ToneMap;
 use crate::sampling::SamplerKind;
-use crate::scene::SceneSettings;
+use crate::scene::{Effects, SceneSettings};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -26,6 +26,7 @@ pub(super) struct FilmTable {
 pub(super) struct RenderTable {
     spp: Option<Count<{ i64::MAX as u64 }>>,
     max_depth: Option<Count<{ u32::MAX as u64 }>>,
+    effects: Option<Spanned<String>>,
     sampler: Option<Spanned<String>>,
     seed: Option<u64>,
 }
@@ -33,29 +34,31 @@ pub(super) struct RenderTable {
 /// The settings of both tables.
 ///
 /// # Errors
-/// For an unknown filter, tone map or sampler.
+/// For an unknown filter, tone map, set of effects or sampler.
 pub(super) fn settings(
     film: &FilmTable,
     render: &RenderTable,
     source: Source,
 ) -> Result<SceneSettings> {
-    let samplers = SamplerKind::ALL.map(|sampler| sampler.0);
-    if let Some(name) = &render.sampler
-        && !samplers.contains(&name.get_ref().as_str())
-    {
-        return Err(source.unknown_name(name.span(), "sampler", name.get_ref(), samplers));
-    }
-    if let Some(name) = &film.filter {
-        Filter::parse(name.get_ref()).map_err(|e| source.error(name.span(), e.to_string()))?;
-    }
-    if let Some(name) = &film.tonemap {
-        ToneMap::parse(name.get_ref()).map_err(|e| source.error(name.span(), e.to_string()))?;
+    let check = |name: &Option<Spanned<String>>, what, known: &[&str]| match name {
+        Some(name) if !known.contains(&name.get_ref().as_str()) => {
+            let known = known.iter().copied();
+            Err(source.unknown_name(name.span(), what, name.get_ref(), known))
+        }
+        _ => Ok(()),
+    };
+    check(&film.tonemap, "tone map", &ToneMap::ALL.map(|tonemap| tonemap.0))?;
+    check(&render.effects, "effects", &Effects::ALL.map(|effects| effects.0))?;
+    check(&render.sampler, "sampler", &SamplerKind::ALL.map(|sampler| sampler.0))?;
+    if let Some(filter) = &film.filter {
+        Filter::parse(filter.get_ref()).map_err(|e| source.error(filter.span(), e.to_string()))?;
     }
     let text = |name: &Option<Spanned<String>>| name.as_ref().map(|name| name.get_ref().clone());
     Ok(SceneSettings {
         size: film.size.map(|size| size.0.map(|count| count.0 as u32)),
         samples_per_pixel: render.spp.map(|count| count.0),
         max_depth: render.max_depth.map(|count| count.0 as u32),
+        effects: text(&render.effects),
         sampler: text(&render.sampler),
         seed: render.seed,
         filter: text(&film.filter),

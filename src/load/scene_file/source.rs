@@ -51,8 +51,7 @@ impl<'a> Source<'a> {
         name: &str,
         known: impl IntoIterator<Item = &'n str>,
     ) -> Error {
-        let known: Vec<&str> = known.into_iter().collect();
-        self.error(span, format!("unknown {what} `{name}`{}", advice(name, &known, "Known")))
+        self.error(span, unknown_name(what, name, known))
     }
 
     /// The path that `file` means: relative to the folder of the scene file.
@@ -98,6 +97,16 @@ fn unknown_key(message: &str) -> Option<String> {
     Some(format!("unknown key `{name}`{}", advice(name, &allowed, "Allowed here")))
 }
 
+/// That `name` is not among `known`, and which of them may be meant; `what` is its kind ("material").
+pub fn unknown_name<'n>(
+    what: &str,
+    name: &str,
+    known: impl IntoIterator<Item = &'n str>,
+) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    format!("unknown {what} `{name}`{}", advice(name, &known, "Known"))
+}
+
 /// What to write instead of `name`: the likeliest of `known` and the list of them all.
 fn advice(name: &str, known: &[&str], lead: &str) -> String {
     let suggestion = did_you_mean(name, known.iter().copied())
@@ -122,7 +131,7 @@ fn between<'t>(text: &'t str, start: &str, end: &str) -> Option<&'t str> {
 
 /// The name among `known` that `name` is likeliest to be a misspelling or a part of, if any is likely:
 /// at most a third of its letters are wrong, or one contains the other.
-pub fn did_you_mean<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+fn did_you_mean<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let name = name.to_lowercase();
     let cost = |candidate: &str| {
         let candidate = candidate.to_lowercase();

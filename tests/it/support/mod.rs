@@ -1,6 +1,7 @@
 //! What the tests share: scenes built in code, ways to render them, and statistical tests.
 
 pub(crate) mod chi_square;
+pub(crate) mod program;
 pub(crate) mod reference_obj;
 pub(crate) mod scenes;
 pub(crate) mod z_test;

@@ -1,0 +1,216 @@
+//! What a machine did: the JSON of `--stats` and `--json`, in SI units, bytes and counts.
+//!
+//! Its schema is `tests/schemas/render.json`, generated from these types by a test. Must not print.
+
+use super::render::Job;
+use crate::accel::BuildStats;
+use crate::film::Film;
+use crate::ledger::{Ledger, Stage};
+use crate::os::peak_rss_bytes;
+use crate::render::Rendered;
+use crate::world::World;
+use serde::Serialize;
+
+/// Wall-clock seconds of each phase.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(super) struct Phases {
+    pub(super) load: f64,
+    pub(super) build: f64,
+    pub(super) render: f64,
+    pub(super) write: f64,
+    pub(super) total: f64,
+}
+
+/// What `glint render` did and what it cost.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(super) struct Statistics {
+    /// Of glint.
+    version: &'static str,
+    /// The command line.
+    command: String,
+    /// Name of the machine.
+    host: String,
+    backend: BackendName,
+    /// With every instance counted.
+    triangles: usize,
+    threads: usize,
+    seconds: Phases,
+    memory_bytes: Memory,
+    /// The least that a pixel got.
+    samples_per_pixel: u64,
+    paths: u64,
+    rays: Rays,
+    /// Of the render alone.
+    rays_per_second: f64,
+    ledger: StageTable,
+    /// Samples that were not finite and are not in the image.
+    non_finite: u64,
+    /// Hash of the settings and of the contents of every file read.
+    fingerprint: String,
+}
+
+/// What found what rays hit.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct BackendName {
+    name: &'static str,
+    version: String,
+}
+
+/// Bytes; the peak is of the whole process.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Memory {
+    geometry: usize,
+    acceleration: usize,
+    textures: usize,
+    film: usize,
+    peak_rss: u64,
+}
+
+/// Rays traced.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Rays {
+    camera: u64,
+    bounce: u64,
+    shadow: u64,
+    total: u64,
+}
+
+/// What each stage of the wavefront cost, summed over threads.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct StageTable {
+    stages: Vec<StageRow>,
+}
+
+/// One stage.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct StageRow {
+    stage: &'static str,
+    seconds: f64,
+    calls: u64,
+    rays: u64,
+    mean_batch: f64,
+}
+
+impl Statistics {
+    pub(super) fn new(
+        job: &Job<'_>,
+        world: &World,
+        build: BuildStats,
+        rendered: &Rendered,
+        mut seconds: Phases,
+    ) -> Self {
+        seconds.total = seconds.load + seconds.build + seconds.render + seconds.write;
+        let ledger = &rendered.ledger;
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            command: command(),
+            host: host(),
+            backend: BackendName { name: job.name.0, version: job.name.1.clone() },
+            triangles: world.geometry.placed_triangles(),
+            threads: match job.args.threads {
+                0 => std::thread::available_parallelism().map_or(1, usize::from),
+                n => n,
+            },
+            seconds,
+            memory_bytes: Memory {
+                geometry: world.geometry.bytes(),
+                acceleration: build.bytes,
+                textures: world.texture_bytes(),
+                film: rendered.film.region().pixels() * Film::BYTES_PER_PIXEL,
+                peak_rss: peak_rss_bytes(),
+            },
+            samples_per_pixel: rendered.film.samples().0,
+            paths: ledger.camera_rays,
+            rays: Rays {
+                camera: ledger.camera_rays,
+                bounce: ledger.bounce_rays,
+                shadow: ledger.shadow_rays,
+                total: ledger.rays(),
+            },
+            rays_per_second: ledger.rays() as f64 / rendered.seconds.max(1e-9),
+            ledger: StageTable { stages: stage_rows(ledger) },
+            non_finite: rendered.non_finite.count,
+            fingerprint: job.fingerprint.clone(),
+        }
+    }
+
+    /// The most important of it, in lines for people.
+    pub(super) fn summary(&self) -> [String; 2] {
+        let megabytes = |bytes: u64| bytes as f64 / 1e6;
+        let (s, memory) = (&self.seconds, &self.memory_bytes);
+        [
+            format!(
+                "load {:.2} s, build {:.2} s, render {:.2} s, write {:.2} s",
+                s.load, s.build, s.render, s.write
+            ),
+            format!(
+                "{:.2} M rays/s, {} paths, {} rays; {} {}, {} threads; {:.0} MB ({:.0} geometry, \
+                 {:.0} acceleration, {:.0} textures, {:.0} film)",
+                self.rays_per_second / 1e6,
+                self.paths,
+                self.rays.total,
+                self.backend.name,
+                self.backend.version,
+                self.threads,
+                megabytes(memory.peak_rss),
+                megabytes(memory.geometry as u64),
+                megabytes(memory.acceleration as u64),
+                megabytes(memory.textures as u64),
+                megabytes(memory.film as u64),
+            ),
+        ]
+    }
+}
+
+fn stage_rows(ledger: &Ledger) -> Vec<StageRow> {
+    let row = |stage: Stage| {
+        let totals = ledger.stage(stage);
+        StageRow {
+            stage: stage.name(),
+            seconds: totals.seconds,
+            calls: totals.calls,
+            rays: totals.items,
+            mean_batch: totals.items as f64 / totals.calls.max(1) as f64,
+        }
+    };
+    Stage::ALL.into_iter().map(row).collect()
+}
+
+/// The command line as it was typed.
+pub(super) fn command() -> String {
+    std::env::args().collect::<Vec<_>>().join(" ")
+}
+
+fn host() -> String {
+    std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default().trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use schemars::generate::SchemaSettings;
+
+    /// `GLINT_WRITE_SCHEMA=1` writes the file before it is compared.
+    #[test]
+    fn the_schema_in_the_repository_is_that_of_the_types() {
+        let settings = SchemaSettings::draft2020_12().for_serialize();
+        let settings = settings.with(|settings| settings.inline_subschemas = true);
+        let schema = settings.into_generator().into_root_schema_for::<Statistics>();
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/schemas/render.json");
+        if std::env::var_os("GLINT_WRITE_SCHEMA").is_some() {
+            let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
+            std::fs::write(path, text).unwrap();
+        }
+        let written = std::fs::read_to_string(path).unwrap_or_default();
+        let written: serde_json::Value = serde_json::from_str(&written).unwrap_or_default();
+        let advice = "type: GLINT_WRITE_SCHEMA=1 cargo test --lib the_schema";
+        assert_eq!(written, schema.to_value(), "{path} is out of date; {advice}");
+    }
+}
