@@ -184,22 +184,23 @@ def main():
     parser.add_argument('--size', type=int, default=128, help='pixels a side')
     parser.add_argument('--spp', type=int, default=128, help='samples a pixel and seed')
     parser.add_argument('--seeds', type=int, default=16)
+    parser.add_argument('--first-seed', type=int, default=0)
     parser.add_argument('--variant', default='scalar_rgb', help='of Mitsuba; llvm_ad_rgb is faster, but needs LLVM')
     parser.add_argument('--one-sided', action='store_true', help="leave Mitsuba's lights as they are")
     parser.add_argument('--pictures', type=pathlib.Path, help='folder for PNG files')
     options = parser.parse_args()
     mi.set_variant(options.variant)
     models = options.model or [REPOSITORY / 'scenes/cornell/cornell.obj', REPOSITORY / 'scenes/glass/trefoil.obj']
+    seeds = range(options.first_seed, options.first_seed + options.seeds)
     worst = 0
     print('| model | mean of the picture, r g b | z | blocks: rms z | max z | largest difference | median standard error |')
     print('|---|---|---|---|---|---|---|')
     for case in map(Case, models):
         scene = mitsuba_scene(case, options)
         with tempfile.TemporaryDirectory() as folder:
-            ours = np.array([render_glint(case, options.glint, pathlib.Path(folder), options, seed)
-                             for seed in range(options.seeds)], dtype=np.float64)
-        theirs = np.array([mi.render(scene, spp=options.spp, seed=seed) for seed in range(options.seeds)],
-                          dtype=np.float64)
+            ours = np.array([render_glint(case, options.glint, pathlib.Path(folder), options, seed) for seed in seeds],
+                            dtype=np.float64)
+        theirs = np.array([mi.render(scene, spp=options.spp, seed=seed) for seed in seeds], dtype=np.float64)
         relative, _, z = compare(ours.mean(axis=(1, 2)), theirs.mean(axis=(1, 2)))
         compared = compare(blocks(ours), blocks(theirs))
         # A block of nothing but sky says nothing.

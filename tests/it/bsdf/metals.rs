@@ -36,9 +36,9 @@ fn metals_have_the_colours_of_their_spectra() {
     }
 }
 
-/// T. Akenine-Moeller et al., Real-Time Rendering (4th edition, 2018), table 9.2. It does not name its measurements:
-/// chromium and palladium must be ours, the others are of similar samples. Left out are iron, nickel, titanium and
-/// silver, where samples differ by more (its silver returns 0.915 in blue; six measurements since 1972 say 0.97).
+/// T. Akenine-Moeller et al., Real-Time Rendering (4th edition, 2018), table 9.2, linear Rec. 709. Chromium and
+/// palladium seem to be of the same measurements as ours, the others of similar samples. Left out are iron,
+/// nickel, titanium and silver, where measurements differ by more (silver in blue: 0.89 to 0.98, in print 0.915).
 #[test]
 fn metals_have_the_colours_in_print() {
     for (name, printed, tolerance) in [
