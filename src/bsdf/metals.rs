@@ -1,11 +1,13 @@
 //! Optical constants of real metals, as linear Rec. 709 channels.
 //!
-//! Source: measurements of P. Johnson and R. Christy, Phys. Rev. B 6, 4370 (1972: copper, gold, silver) and
-//! Phys. Rev. B 9, 5056 (1974: chromium, cobalt, iron, nickel, palladium, titanium); A. Rakic, Applied
-//! Optics 34, 4755 (1995: aluminium); J. Weaver et al., Phys. Rev. B 12, 1293 (1975: tungsten).
-//! Each channel is the measured curve, interpolated linearly, at the dominant wavelength of the Rec. 709
-//! primary: 611, 549 and 464 nm. So the colours are those of three spectral lines, not an average over
-//! the eye's sensitivities; gold and copper come out a little more saturated.
+//! Sources: P. Johnson and R. Christy, Phys. Rev. B 6, 4370 (1972: copper, silver) and Phys. Rev. B 9, 5056
+//! (1974: chromium, cobalt, iron, nickel, palladium, titanium); A. Rakic, Applied Optics 34, 4755 (1995:
+//! aluminium); R. Olmon et al., Phys. Rev. B 86, 235147 (2012: gold); J. Weaver et al., Phys. Rev. B 12, 1293
+//! (1975: tungsten).
+//! `scenes/metals.py` holds their spectra and makes this table. A channel reflects, at normal incidence, what
+//! integrating the measured reflectance against the CIE 1931 observer under D65 gives; its `eta` is a mean over
+//! the channel and its `k` follows. At other angles the channels stay within 0.015 of the spectral integral
+//! (copper and gold in red: 0.04). Gold's red is outside of Rec. 709, at 1.04, and is clipped to 0.999.
 
 use crate::math::Rgb;
 
@@ -49,15 +51,15 @@ const fn metal(name: &'static str, eta: [f32; 3], k: [f32; 3]) -> Metal {
 
 /// All known metals, by name.
 pub const METALS: [Metal; 11] = [
-    metal("aluminium", [1.320, 1.011, 0.683], [7.31, 6.62, 5.62]),
-    metal("chromium", [3.179, 3.180, 2.447], [3.30, 3.33, 3.21]),
-    metal("cobalt", [2.180, 2.050, 1.786], [4.08, 3.82, 3.36]),
-    metal("copper", [0.367, 1.016, 1.246], [3.12, 2.58, 2.45]),
-    metal("gold", [0.223, 0.428, 1.335], [3.20, 2.46, 1.87]),
-    metal("iron", [2.890, 2.950, 2.642], [3.04, 2.93, 2.80]),
-    metal("nickel", [1.985, 1.920, 1.763], [3.98, 3.61, 3.04]),
-    metal("palladium", [1.738, 1.640, 1.443], [4.18, 3.84, 3.34]),
-    metal("silver", [0.058, 0.060, 0.046], [4.10, 3.59, 2.79]),
-    metal("titanium", [2.658, 2.540, 2.303], [3.70, 3.43, 3.08]),
-    metal("tungsten", [3.578, 3.522, 3.324], [2.88, 2.74, 2.57]),
+    metal("aluminium", [1.273, 0.974, 0.648], [7.062, 6.509, 5.537]),
+    metal("chromium", [3.127, 3.046, 2.368], [3.276, 3.328, 3.148]),
+    metal("cobalt", [2.146, 2.016, 1.747], [4.141, 3.782, 3.264]),
+    metal("copper", [0.505, 1.028, 1.246], [5.127, 2.611, 2.321]),
+    metal("gold", [0.269, 0.454, 1.400], [32.778, 2.434, 1.632]),
+    metal("iron", [2.889, 2.888, 2.585], [3.071, 2.936, 2.755]),
+    metal("nickel", [1.963, 1.892, 1.745], [4.132, 3.565, 2.906]),
+    metal("palladium", [1.710, 1.609, 1.419], [4.265, 3.801, 3.237]),
+    metal("silver", [0.054, 0.054, 0.044], [4.365, 3.517, 2.619]),
+    metal("titanium", [2.631, 2.496, 2.270], [3.792, 3.395, 3.025]),
+    metal("tungsten", [3.569, 3.486, 3.337], [2.933, 2.751, 2.501]),
 ];
