@@ -23,20 +23,20 @@ pub fn resolve_all(geometry: &Geometry, rays: &[Ray], ids: &[PrimitiveId], hits:
     let mut lanes = Lanes::new();
     for ((rays, ids), hits) in rays.chunks(LANES).zip(ids.chunks(LANES)).zip(hits.chunks_mut(LANES))
     {
-        // Gather those that hit: vertex fetches of neighbouring rays overlap.
+        // Which rays hit is random: told apart without a branch.
         let mut places = [0; LANES];
         let mut count = 0;
-        for (place, (ray, &id)) in rays.iter().zip(ids).enumerate() {
-            if id == PrimitiveId::MISS {
-                hits[place] = Hit::MISS;
-            } else {
-                lanes.set(count, ray, geometry.world_vertices(id));
-                places[count] = place;
-                count += 1;
-            }
+        for (place, &id) in ids.iter().enumerate() {
+            hits[place] = Hit::MISS;
+            places[count] = place;
+            count += usize::from(id != PrimitiveId::MISS);
         }
         if count == 0 {
             continue;
+        }
+        // Vertex fetches of neighbouring rays overlap.
+        for (lane, &place) in places[..count].iter().enumerate() {
+            lanes.set(lane, &rays[place], geometry.world_vertices(ids[place]));
         }
         isa.run(ResolveKernel { lanes: &mut lanes });
         for (lane, &place) in places[..count].iter().enumerate() {

@@ -23,10 +23,9 @@ impl Scatter for Lambert {
 
     #[inline]
     fn evaluate(&self, wo: Vec3, wi: Vec3) -> BsdfValue {
-        if wo.z <= 0.0 || wi.z <= 0.0 {
-            return BsdfValue::ZERO;
-        }
-        let pdf_solid_angle = warp::cosine_hemisphere_pdf(wi.z);
+        // A select, not a branch: on which side a sampled light is, is random. Below, the density is 0.
+        let cos_theta = if wo.z > 0.0 { wi.z } else { 0.0 };
+        let pdf_solid_angle = warp::cosine_hemisphere_pdf(cos_theta);
         BsdfValue { f_cos: self.albedo * pdf_solid_angle, pdf_solid_angle }
     }
 

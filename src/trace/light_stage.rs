@@ -43,14 +43,10 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
                 continue;
             };
             let wi = vertex.at.frame.local_from_world(light.direction);
-            // Shading and geometric normal must agree on which side the light is, or it would leak.
-            if (wi.z > 0.0) != (vertex.at.n_geometric.dot(light.direction) > 0.0) {
-                continue;
-            }
             let value = model.evaluate(vertex.wo, wi);
-            if value.f_cos.is_black() {
-                continue;
-            }
+            // Shading and geometric normal must agree on which side the light is, or it would leak.
+            let is_same_side = (wi.z > 0.0) == (vertex.at.n_geometric.dot(light.direction) > 0.0);
+            let adds = is_same_side & !value.f_cos.is_black();
             let weight = match light.is_delta {
                 true => 1.0,
                 false => power_heuristic(light.pdf_solid_angle, value.pdf_solid_angle),
@@ -63,8 +59,8 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
                 None => Ray::new(origin, light.direction),
             };
             ray.id = self.tracer.ray_id(&path.sampler, bounce, RayKind::Shadow);
-            self.shadow_rays.push(ray);
-            self.shadow_gains.push((vertex.slot, gain));
+            self.shadow_rays.push_if(adds, ray);
+            self.shadow_gains.push_if(adds, (vertex.slot, gain));
         }
     }
 }

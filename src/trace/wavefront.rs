@@ -34,6 +34,9 @@ pub struct Wavefront {
     active: Batch<u32>,
     rays: Batch<Ray>,
     hits: Box<[Hit]>,
+    /// Places of the rays that met something, and of those that left the scene.
+    met: Batch<u32>,
+    missed: Batch<u32>,
     vertices: Batch<Vertex>,
     groups: Groups,
     /// Random numbers of the vertices, for the stage at hand.
@@ -63,6 +66,8 @@ impl Wavefront {
             active: Batch::new(capacity),
             rays: Batch::new(capacity),
             hits: vec![Hit::MISS; capacity].into(),
+            met: Batch::new(capacity),
+            missed: Batch::new(capacity),
             vertices: Batch::new(capacity),
             groups: Groups::with_capacity(capacity),
             pairs: Pairs::new(capacity),
@@ -148,22 +153,30 @@ impl Wavefront {
     fn interact<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
         self.vertices.clear();
         self.finished.clear();
-        for (&slot, hit) in self.active.iter().zip(&*self.hits) {
+        // Which rays met something is random: told apart without a branch, before two straight loops.
+        self.met.clear();
+        self.missed.clear();
+        for (hit, i) in self.hits[..self.active.len()].iter().zip(0..) {
+            self.met.push_if(hit.is_hit(), i);
+            self.missed.push_if(!hit.is_hit(), i);
+        }
+        for &i in &*self.missed {
+            let slot = self.active[i as usize];
             let path = &mut self.slots[slot as usize];
-            if !hit.is_hit() {
-                if !(tracer.hide_background && path.bounce == 0) {
-                    for (radiance, pdf) in tracer.world.lights.at_infinity(path.ray.direction) {
-                        let weight = if path.is_delta {
-                            1.0
-                        } else {
-                            power_heuristic(path.pdf_solid_angle, pdf)
-                        };
-                        path.radiance += path.throughput * radiance * weight;
-                    }
+            if !(tracer.hide_background && path.bounce == 0) {
+                for (radiance, pdf) in tracer.world.lights.at_infinity(path.ray.direction) {
+                    let weight = match path.is_delta {
+                        true => 1.0,
+                        false => power_heuristic(path.pdf_solid_angle, pdf),
+                    };
+                    path.radiance += path.throughput * radiance * weight;
                 }
-                self.finished.push(slot);
-                continue;
             }
+            self.finished.push(slot);
+        }
+        for &i in &*self.met {
+            let (slot, hit) = (self.active[i as usize], &self.hits[i as usize]);
+            let path = &mut self.slots[slot as usize];
             // What the medium absorbed on the way (Beer-Lambert).
             if !path.absorption.is_black() {
                 path.throughput *= (path.absorption * -hit.t).map(fun::exp);
@@ -251,9 +264,8 @@ impl Wavefront {
         let blocked = &mut self.blocked[..self.shadow_rays.len()];
         tracer.accelerator.occluded(&self.shadow_rays, filter, blocked);
         for (&(slot, gain), blocked) in self.shadow_gains.iter().zip(blocked) {
-            if !*blocked {
-                self.slots[slot as usize].radiance += gain;
-            }
+            // A select, not a branch: what is blocked is random.
+            self.slots[slot as usize].radiance += if *blocked { Rgb::BLACK } else { gain };
         }
         self.ledger.shadow_rays += self.shadow_rays.len() as u64;
         clock.lap(&mut self.ledger, Stage::Shadow, self.shadow_rays.len());
