@@ -19,7 +19,7 @@ pub fn resolve(geometry: &Geometry, ray: &Ray, id: PrimitiveId) -> Hit {
 
 /// [`resolve`] for each ray with its id; misses stay misses.
 pub fn resolve_all(geometry: &Geometry, rays: &[Ray], ids: &[PrimitiveId], hits: &mut [Hit]) {
-    let isa = Isa::detect();
+    let isa = Isa::current();
     let mut lanes = Lanes::new();
     for ((rays, ids), hits) in rays.chunks(LANES).zip(ids.chunks(LANES)).zip(hits.chunks_mut(LANES))
     {

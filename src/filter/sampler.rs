@@ -4,7 +4,7 @@
 //! Weights are never renormalised, so a pixel is an unbiased estimate of the filtered image.
 
 use super::Filter;
-use super::quantiles::{SHARES, quantiles};
+use super::quantiles::{Place, QUANTILES, quantiles};
 
 /// Draws positions with density |f(x) f(y)| / c and gives them the weight +c or -c, the sign of f(x) f(y),
 /// where f is normalised and c = (integral of |f|)^2, so that the expected weight is 1.
@@ -29,7 +29,7 @@ pub struct FilterSampler {
 struct Choice {
     /// Where it begins in the first number; it ends where the next one begins.
     start: f32,
-    /// Stretches the first number from its own range to the table's.
+    /// Stretches the first number from its own range to [0, 1].
     scale: f32,
     /// Where the table of x begins.
     x: u32,
@@ -40,9 +40,9 @@ struct Choice {
 }
 
 /// A power of two, so that an index is cut to it and needs no check.
-const TABLE: usize = 4 * SHARES;
-const NEGATIVE: usize = 2 * SHARES;
-const _: () = assert!(TABLE.is_power_of_two() && SHARES < NEGATIVE);
+const TABLE: usize = 2 * NEGATIVE;
+const NEGATIVE: usize = 1024;
+const _: () = assert!(TABLE.is_power_of_two() && QUANTILES <= NEGATIVE);
 
 impl FilterSampler {
     /// Tabulates `filter`: f takes its mean over each of 8192 cells along an axis, of whose distribution the
@@ -59,8 +59,8 @@ impl FilterSampler {
         let positive: Vec<f64> = values.iter().map(|v| v.max(0.0)).collect();
         let negative: Vec<f64> = values.iter().map(|v| (-v).max(0.0)).collect();
         let mut table = Box::new([0.0; TABLE]);
-        table[..=SHARES].copy_from_slice(&quantiles(&positive));
-        table[NEGATIVE..=NEGATIVE + SHARES].copy_from_slice(&quantiles(&negative));
+        table[..QUANTILES].copy_from_slice(&quantiles(&positive));
+        table[NEGATIVE..NEGATIVE + QUANTILES].copy_from_slice(&quantiles(&negative));
 
         let (p, n): (f64, f64) = (positive.iter().sum(), negative.iter().sum());
         let (p, n) = (p / (p + n), n / (p + n));
@@ -75,7 +75,7 @@ impl FilterSampler {
             (p * p, positive, positive, weight),
         ]
         .map(|(probability, x, y, weight)| {
-            let scale = (SHARES as f64 / probability) as f32;
+            let scale = (1.0 / probability) as f32;
             let choice = Choice { start: start as f32, scale, x, y, weight };
             start += probability;
             choice
@@ -93,13 +93,10 @@ impl FilterSampler {
     /// best the sampler's film dimension.
     #[inline(always)]
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
-        let (shares, weight) = choose(&self.choices, u);
-        let offsets = shares.map(|Share { place, within }| {
-            self.offset(
-                self.table[place as usize % TABLE],
-                self.table[(place as usize + 1) % TABLE],
-                within,
-            )
+        let (places, weight) = choose(&self.choices, u);
+        let offsets = places.map(|(base, place)| {
+            let i = (base + place.index) as usize;
+            place.position(self.table[i % TABLE], self.table[(i + 1) % TABLE]) * self.radius
         });
         (offsets, weight)
     }
@@ -114,47 +111,32 @@ impl FilterSampler {
         weights: &mut [f32; N],
     ) {
         let choices = self.choices;
-        let mut places = [[0; N]; 2];
-        let mut withins = [[0.0; N]; 2];
+        let mut indices = [[0; N]; 2];
         for i in 0..N {
-            let ([x, y], weight) = choose(&choices, [u[i], v[i]]);
-            (places[0][i], places[1][i]) = (x.place, y.place);
-            (withins[0][i], withins[1][i]) = (x.within, y.within);
+            let ([(base_x, x), (base_y, y)], weight) = choose(&choices, [u[i], v[i]]);
+            (indices[0][i], indices[1][i]) = (base_x + x.index, base_y + y.index);
             weights[i] = weight;
         }
-        for ((places, withins), offsets) in places.iter().zip(&withins).zip(offsets) {
-            let mut low = [0.0; N];
-            let mut high = [0.0; N];
+        let mut quantiles = [[[0.0; N]; 2]; 2];
+        for (indices, [low, high]) in indices.iter().zip(&mut quantiles) {
             for i in 0..N {
-                low[i] = self.table[places[i] as usize % TABLE];
-                high[i] = self.table[(places[i] as usize + 1) % TABLE];
-            }
-            for i in 0..N {
-                offsets[i] = self.offset(low[i], high[i], withins[i]);
+                low[i] = self.table[indices[i] as usize % TABLE];
+                high[i] = self.table[(indices[i] as usize + 1) % TABLE];
             }
         }
-    }
-
-    /// The offset a part `within` of the way from one quantile to the next.
-    #[inline(always)]
-    fn offset(&self, low: f32, high: f32, within: f32) -> f32 {
-        let position = (low + (high - low) * within).max(0.0).min(1.0);
-        (2.0 * position - 1.0) * self.radius
+        for i in 0..N {
+            // Once more, rather than carried past the look-up: it is cheap.
+            let ([(_, x), (_, y)], _) = choose(&choices, [u[i], v[i]]);
+            let [[low_x, high_x], [low_y, high_y]] = &quantiles;
+            offsets[0][i] = x.position(low_x[i], high_x[i]) * self.radius;
+            offsets[1][i] = y.position(low_y[i], high_y[i]) * self.radius;
+        }
     }
 }
 
-/// A place between two quantiles.
-#[derive(Clone, Copy, Debug)]
-struct Share {
-    /// Of the lower quantile in the table.
-    place: u32,
-    /// How far from it to the next, in [0, 1] but for rounding.
-    within: f32,
-}
-
-/// Where in the table x and y are looked up, and the sample's weight. Without branches.
+/// Where x and y are looked up, each with the start of its table, and the sample's weight. Without branches.
 #[inline(always)]
-fn choose(choices: &[Choice; 4], [u, v]: [f32; 2]) -> ([Share; 2], f32) {
+fn choose(choices: &[Choice; 4], [u, v]: [f32; 2]) -> ([(u32, Place); 2], f32) {
     let mut chosen = choices[0];
     for next in &choices[1..] {
         let take = u >= next.start;
@@ -166,16 +148,6 @@ fn choose(choices: &[Choice; 4], [u, v]: [f32; 2]) -> ([Share; 2], f32) {
             weight: if take { next.weight } else { chosen.weight },
         };
     }
-    let x = share(chosen.x, (u - chosen.start) * chosen.scale);
-    ([x, share(chosen.y, v * SHARES as f32)], chosen.weight)
-}
-
-/// `number`, in [0, [`SHARES`]] but for rounding, in the table that begins at `base`.
-#[inline(always)]
-fn share(base: u32, number: f32) -> Share {
-    // Rounds down by adding a number whose last bit counts ones; a whole number may round to the share
-    // before, at whose end it is. The last share goes on to its end where `number` has rounded up.
-    const ONES: f32 = 8_388_608.0;
-    let rounded = (number - 0.5).max(0.0).min((SHARES - 1) as f32) + ONES;
-    Share { place: base + (rounded.to_bits() - ONES.to_bits()), within: number - (rounded - ONES) }
+    let x = Place::of((u - chosen.start) * chosen.scale);
+    ([(chosen.x, x), (chosen.y, Place::of(v))], chosen.weight)
 }

@@ -4,6 +4,8 @@
 //! instruction set, and the compiler vectorises each copy as far as the set goes. Rust neither fuses nor
 //! reorders floating-point operations, so all copies give the same bits. Knows nothing of what kernels do.
 
+use std::sync::atomic::{AtomicU8, Ordering};
+
 /// Instruction sets, each including those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Isa {
@@ -37,6 +39,22 @@ impl Isa {
         Self::Portable
     }
 
+    /// The set that kernels are to use: the widest of this machine, unless [`Isa::limit`] said less.
+    #[inline]
+    pub fn current() -> Self {
+        let limit = match LIMIT.load(Ordering::Relaxed) {
+            0 => Self::Portable,
+            1 => Self::Avx2,
+            _ => Self::Avx512,
+        };
+        limit.min(Self::detect())
+    }
+
+    /// Lets the whole program use no wider set than this one. Results do not depend on it, only speed.
+    pub fn limit(self) {
+        LIMIT.store(self as u8, Ordering::Relaxed);
+    }
+
     /// Runs the copy of `kernel` for this set, or for the widest that the machine has, if that is less.
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) {
@@ -53,6 +71,9 @@ impl Isa {
         }
     }
 }
+
+/// The widest set allowed.
+static LIMIT: AtomicU8 = AtomicU8::new(Isa::Avx512 as u8);
 
 /// Work that is worth compiling for every instruction set.
 pub trait Kernel {

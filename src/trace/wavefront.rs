@@ -75,7 +75,7 @@ impl Wavefront {
             shadow_gains: Batch::new(capacity),
             blocked: vec![false; capacity].into(),
             finished: Batch::new(capacity),
-            isa: Isa::detect(),
+            isa: Isa::current(),
             ledger: Ledger::default(),
         }
     }

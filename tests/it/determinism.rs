@@ -5,6 +5,7 @@
 
 use crate::support::scenes::{Builder, Shot, cornell, cornell_shot, zoo, zoo_shot};
 use glint::film::Region;
+use glint::os::Isa;
 use glint::sampling::SamplerKind;
 use glint::world::World;
 
@@ -28,6 +29,18 @@ fn threads_change_no_byte() {
 fn batch_size_changes_no_byte() {
     for (name, world, shot) in scenes() {
         let films = [1, 7, 4096].map(|batch| Shot { batch, ..shot.clone() }.render(&world).film);
+        assert!(films[0] == films[1] && films[1] == films[2], "{name}");
+    }
+}
+
+/// Other tests may run meanwhile: what they see does not depend on it either.
+#[test]
+fn the_instruction_set_changes_no_byte() {
+    for (name, world, shot) in scenes() {
+        let films = Isa::ALL.map(|(_, isa)| {
+            isa.limit();
+            shot.clone().render(&world).film
+        });
         assert!(films[0] == films[1] && films[1] == films[2], "{name}");
     }
 }
