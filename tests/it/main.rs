@@ -22,3 +22,4 @@ mod scene_file_errors;
 mod statistics;
 mod support;
 mod tidy;
+mod x;
