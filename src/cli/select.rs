@@ -2,9 +2,9 @@
 
 use super::args::{Render, Up, numbers, rgb};
 use crate::camera::{Camera, frame_points};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, unknown_name};
 use crate::film::Region;
-use crate::filter::{Filter, FilterKind};
+use crate::filter::Filter;
 use crate::image::ToneMap;
 use crate::load;
 use crate::math::{DVec3, Rgb};
@@ -58,7 +58,7 @@ impl Settings {
             effects: named_or_default(effects, &Effects::ALL, "effects")?,
             sampler: named_or_default(sampler, &SamplerKind::ALL, "sampler")?,
             seed: args.seed.or(file.seed).unwrap_or(0),
-            filter: filter.map_or(Ok(Filter::default()), |text| parse_filter(text))?,
+            filter: filter.map_or(Ok(Filter::default()), |text| Filter::parse(text))?,
             exposure: args.exposure.or(file.exposure),
             tonemap: named_or_default(tonemap, &ToneMap::ALL, "tone map")?,
             aovs: args.aov.iter().map(|n| named(n, &Aov::ALL, "AOV")).collect::<Result<_>>()?,
@@ -71,7 +71,7 @@ fn named<T: Copy>(name: &str, all: &[(&str, T)], kind: &str) -> Result<T> {
     all.iter()
         .find(|(n, _)| *n == name)
         .map(|(_, value)| *value)
-        .ok_or_else(|| Error::Usage(load::unknown_name(kind, name, all.iter().map(|(n, _)| *n))))
+        .ok_or_else(|| Error::Usage(unknown_name(kind, name, all.iter().map(|(n, _)| *n))))
 }
 
 fn named_or_default<T>(name: Option<&String>, all: &[(&str, T)], kind: &str) -> Result<T>
@@ -79,13 +79,6 @@ where
     T: Copy + Default,
 {
     name.map_or(Ok(T::default()), |name| named(name, all, kind))
-}
-
-/// A filter's name, and its radius if that is said.
-fn parse_filter(description: &str) -> Result<Filter> {
-    let name = description.split(':').next().unwrap_or_default();
-    named(name, &FilterKind::ALL.map(|(name, kind, _)| (name, kind)), "filter")?;
-    Filter::parse(description)
 }
 
 /// The material that `--override-material` gives to every surface.

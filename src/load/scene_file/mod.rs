@@ -64,8 +64,6 @@ mod texture;
 mod transform;
 mod value;
 
-pub use source::unknown_name;
-
 use crate::error::{Error, Result};
 use crate::image::open_regular;
 use crate::load::obj::{Materials, load_model};
