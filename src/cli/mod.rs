@@ -9,6 +9,7 @@ mod render;
 mod report;
 mod select;
 mod statistics;
+mod values;
 
 use crate::error::Error;
 use clap::Parser;

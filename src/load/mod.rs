@@ -24,7 +24,7 @@ mod scene_file;
 mod warning_list;
 
 pub use crate::image::ColorSpace;
-pub use environment::add_environment_image;
+pub use environment::Surroundings;
 pub use fingerprint::fingerprint;
 pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;

@@ -8,6 +8,7 @@ mod bsdf;
 mod camera;
 mod cli;
 mod cli_input;
+mod cli_options;
 mod closed_forms;
 mod cut_outs;
 mod determinism;
