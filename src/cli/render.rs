@@ -158,6 +158,7 @@ fn finish<A: Accelerator>(
         batch: Wavefront::DEFAULT_BATCH,
         stop: Some(job.stop),
     };
+    job.stop.store(false, Ordering::Relaxed);
     let bar = progress::bar(
         job.args,
         (region.pixels() as u64).saturating_mul(settings.samples_per_pixel),
@@ -208,16 +209,16 @@ fn replay<A: Accelerator>(
     Ok(DONE)
 }
 
-/// A flag that the first Ctrl-C sets; the second one ends the process with code 130.
+/// A flag that Ctrl-C sets; where it finds it set already it ends the process with code 130. It is set from the
+/// beginning, because until the render starts (and takes it down) there is nothing to write.
 fn stop_flag() -> Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
+    let stop = Arc::new(AtomicBool::new(true));
     let failed = |e| Error::Usage(format!("cannot handle signals: {e}"));
     for &signal in TERM_SIGNALS {
-        // In this order: the second signal finds the flag set by the first.
+        // In this order: a signal must not find the flag that it has set itself.
         signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone())
             .map_err(failed)?;
         signal_hook::flag::register(signal, stop.clone()).map_err(failed)?;
     }
-    debug_assert!(!stop.load(Ordering::Relaxed));
     Ok(stop)
 }

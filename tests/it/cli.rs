@@ -269,31 +269,3 @@ fn a_replayed_sample_is_the_one_that_was_rendered() {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(said.contains(&format!("radiance {red} ")), "{red}: {said}");
 }
-
-/// A child that does not outlive its test.
-struct Child(std::process::Child);
-
-impl Drop for Child {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-    }
-}
-
-#[test]
-fn a_signal_writes_what_there_is_and_exits_with_3() {
-    let bench = Bench::new();
-    bench.file("model.obj", TRIANGLE);
-    let child = Command::new(env!("CARGO_BIN_EXE_glint"))
-        .args(["render", "model.obj", "--size", "512x512", "--spp", "1000000", "-o", "a.exr"])
-        .args(["--quiet"])
-        .current_dir(bench.folder())
-        .spawn();
-    let mut child = Child(child.expect("glint starts"));
-    // The handlers are set before the first file is opened; wait for the render itself.
-    std::thread::sleep(std::time::Duration::from_secs(2));
-    // The shell's own kill: a bare system has no other.
-    let kill = format!("kill -INT {}", child.0.id());
-    assert!(Command::new("bash").args(["-c", &kill]).status().expect("bash").success());
-    assert_eq!(child.0.wait().expect("it ends").code(), Some(3));
-    assert!(channels(&bench.path("a.exr")).metadata.contains_key("glint.samples"));
-}

@@ -9,6 +9,7 @@ mod camera;
 mod cli;
 mod cli_input;
 mod cli_options;
+mod cli_signals;
 mod closed_forms;
 mod cut_outs;
 mod determinism;
