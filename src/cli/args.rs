@@ -1,6 +1,15 @@
-//! What can be said on the command line, as it was said: nothing is done while parsing.
+//! What can be said on the command line, each option in the type that it means. Parsing opens no file.
 
+use super::values::{
+    Env, crop, direction, env, field_of_view, filter, finite, named, override_material, point,
+    replay, rgb_fractions, size, threads,
+};
+use crate::filter::Filter;
+use crate::image::ToneMap;
 use crate::math::{DVec3, Rgb};
+use crate::render::Aov;
+use crate::sampling::SamplerKind;
+use crate::scene::{Effects, Material};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -39,16 +48,17 @@ pub(super) struct Render {
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub(super) output: Vec<PathBuf>,
     /// Extra layers for the EXR: normal, albedo, depth, position, uv, primitive, material, samples, variance
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', help_heading = "Output")]
-    pub(super) aov: Vec<String>,
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named("AOV", &Aov::ALL),
+          help_heading = "Output")]
+    pub(super) aov: Vec<Aov>,
     /// Exposure of PNG files in stops [default: automatic]
-    #[arg(long, value_name = "EV", allow_negative_numbers = true, help_heading = "Output")]
+    #[arg(long, value_name = "EV", value_parser = finite, allow_negative_numbers = true, help_heading = "Output")]
     pub(super) exposure: Option<f32>,
     /// Tone map of PNG files: none, aces, agx or reinhard [default: agx]
-    #[arg(long, value_name = "NAME", help_heading = "Output")]
-    pub(super) tonemap: Option<String>,
+    #[arg(long, value_name = "NAME", value_parser = named("tone map", &ToneMap::ALL), help_heading = "Output")]
+    pub(super) tonemap: Option<ToneMap>,
     /// Hide the environment from the camera; PNG files show this sRGB colour (0..1) instead
-    #[arg(long, value_name = "R,G,B", value_parser = rgb, help_heading = "Output")]
+    #[arg(long, value_name = "R,G,B", value_parser = rgb_fractions, help_heading = "Output")]
     pub(super) background: Option<Rgb>,
     /// Write statistics as JSON
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -73,14 +83,14 @@ pub(super) struct Render {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Image")]
     pub(super) max_depth: Option<u32>,
     /// Effects to simulate: path [default: path]
-    #[arg(long, value_name = "NAME", help_heading = "Image")]
-    pub(super) effects: Option<String>,
+    #[arg(long, value_name = "NAME", value_parser = named("effects", &Effects::ALL), help_heading = "Image")]
+    pub(super) effects: Option<Effects>,
     /// Sampler: sobol or independent [default: sobol]
-    #[arg(long, value_name = "NAME", help_heading = "Image")]
-    pub(super) sampler: Option<String>,
+    #[arg(long, value_name = "NAME", value_parser = named("sampler", &SamplerKind::ALL), help_heading = "Image")]
+    pub(super) sampler: Option<SamplerKind>,
     /// Pixel filter: box, tent, gaussian, mitchell, blackman-harris or lanczos [default: blackman-harris]
-    #[arg(long, value_name = "NAME[:RADIUS]", help_heading = "Image")]
-    pub(super) filter: Option<String>,
+    #[arg(long, value_name = "NAME[:RADIUS]", value_parser = filter, help_heading = "Image")]
+    pub(super) filter: Option<Filter>,
     /// Random seed [default: 0]
     #[arg(long, value_name = "N", help_heading = "Image")]
     pub(super) seed: Option<u64>,
@@ -95,18 +105,18 @@ pub(super) struct Render {
     #[arg(long, value_name = "x,y,z", value_parser = point, allow_hyphen_values = true, help_heading = "Camera")]
     pub(super) camera_to: Option<DVec3>,
     /// Upward direction in the picture
-    #[arg(long, value_name = "x,y,z", value_parser = point, allow_hyphen_values = true, help_heading = "Camera")]
+    #[arg(long, value_name = "x,y,z", value_parser = direction, allow_hyphen_values = true, help_heading = "Camera")]
     pub(super) camera_up: Option<DVec3>,
     /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEGREES", help_heading = "Camera")]
+    #[arg(long, value_name = "DEGREES", value_parser = field_of_view, help_heading = "Camera")]
     pub(super) fov: Option<f64>,
 
     /// Light around the scene: constant:R,G,B, sky:ELEVATION,AZIMUTH (degrees), or an .hdr or .exr file
-    #[arg(long, value_name = "ENV", help_heading = "Scene")]
-    pub(super) env: Option<String>,
+    #[arg(long, value_name = "ENV", value_parser = env, help_heading = "Scene")]
+    pub(super) env: Option<Env>,
     /// Give every surface one material: diffuse:R,G,B
-    #[arg(long, value_name = "MATERIAL", help_heading = "Scene")]
-    pub(super) override_material: Option<String>,
+    #[arg(long, value_name = "MATERIAL", value_parser = override_material, help_heading = "Scene")]
+    pub(super) override_material: Option<Material>,
     /// Which axis of the scene is up [default: y]
     #[arg(long, value_enum, help_heading = "Scene")]
     pub(super) up: Option<Up>,
@@ -117,8 +127,8 @@ pub(super) struct Render {
     /// Backend that finds what rays hit
     #[arg(long, value_enum, default_value_t = Backend::Auto, help_heading = "Machine")]
     pub(super) accel: Backend,
-    /// Threads to use; 0 is one a core
-    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Machine")]
+    /// Threads to use, up to 1024; 0 is one a core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads, help_heading = "Machine")]
     pub(super) threads: usize,
     /// Trace one sample of one pixel and print what it met
     #[arg(long, value_name = "x,y,sample", value_parser = replay, help_heading = "Machine")]
@@ -145,46 +155,11 @@ pub(super) enum Up {
     Z,
 }
 
-/// `N` numbers separated by commas.
-pub(super) fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Result<[T; N], String> {
-    let parsed: Option<Vec<T>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    parsed
-        .and_then(|values| <[T; N]>::try_from(values).ok())
-        .ok_or_else(|| format!("expected {N} numbers separated by commas"))
-}
-
-fn point(text: &str) -> Result<DVec3, String> {
-    let p = DVec3::from_array(numbers(text)?);
-    if p.is_finite() { Ok(p) } else { Err("the numbers must be finite".into()) }
-}
-
-/// Three finite numbers that are not negative.
-pub(super) fn rgb(text: &str) -> Result<Rgb, String> {
-    let c = numbers::<f32, 3>(text)?;
-    let valid = c.iter().all(|v| v.is_finite() && *v >= 0.0);
-    if valid { Ok(Rgb::from(c)) } else { Err("a colour is three numbers of at least 0".into()) }
-}
-
-fn size(text: &str) -> Result<[u32; 2], String> {
-    let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 1280x720")?;
-    let side = |text: &str| match text.trim().parse::<u32>() {
-        Ok(n @ 1..=65_536) => Ok(n),
-        _ => Err(format!("`{text}` is not a number of pixels from 1 to 65536")),
-    };
-    Ok([side(width)?, side(height)?])
-}
-
-fn crop(text: &str) -> Result<[u32; 4], String> {
-    let [x0, y0, x1, y1] = numbers(text)?;
-    if x0 < x1 && y0 < y1 {
-        Ok([x0, y0, x1, y1])
-    } else {
-        Err("expected x0 < x1 and y0 < y1".into())
+impl Up {
+    pub(super) fn direction(self) -> DVec3 {
+        match self {
+            Self::Y => DVec3::Y,
+            Self::Z => DVec3::Z,
+        }
     }
-}
-
-fn replay(text: &str) -> Result<([u32; 2], u64), String> {
-    let [x, y, sample] = numbers::<u64, 3>(text)?;
-    let side = |n: u64| u32::try_from(n).map_err(|_| format!("{n} is not a pixel"));
-    Ok(([side(x)?, side(y)?], sample))
 }

@@ -1,6 +1,7 @@
 //! The command line: words to jobs, jobs to exit codes. The only place that prints.
 //!
-//! Exit codes: 0 done; 1 failed; 2 wrong usage; 3 done, but something asked for was not met.
+//! Exit codes: 0 done; 1 failed; 2 wrong usage; 3 done, but something asked for was not met; 130 ended by a
+//! signal with nothing written.
 
 mod args;
 mod output;
@@ -9,6 +10,7 @@ mod render;
 mod report;
 mod select;
 mod statistics;
+mod values;
 
 use crate::error::Error;
 use clap::Parser;

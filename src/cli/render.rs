@@ -1,6 +1,6 @@
 //! `glint render`: a scene file in, a picture out. The newcomer's page: the whole pipeline in order.
 
-use super::args::{Backend, Render};
+use super::args::{Backend, Render, Up};
 use super::output::{Outputs, Picture};
 use super::select::{self, Settings};
 use super::statistics::{Phases, Statistics};
@@ -28,6 +28,8 @@ use std::time::Instant;
 /// Renders as told; the exit code.
 pub(super) fn run(args: &Render) -> Result<u8> {
     let mut phases = Phases::default();
+    select::check(args)?;
+    let chosen = backend(args.accel)?;
     let stop = stop_flag()?;
     // Loading, the sky and the PNG use the global pool; a second call in one process may fail, harmlessly.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(args.threads).build_global();
@@ -37,12 +39,13 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     let busy = progress::busy(args, "loading");
     let outputs = Outputs::check(args)?;
     let options = LoadOptions {
-        material: select::override_material(args)?,
+        material: args.override_material.clone(),
+        surroundings: select::surroundings(args)?,
         progress: Some(&|done, total| progress::reading(&busy, done, total)),
     };
     let mut scene = load::load_scene_with(&args.scene, options)?;
-    select::override_scene(args, &mut scene)?;
-    let settings = Settings::resolve(args, &scene)?;
+    scene.up = args.up.map_or(scene.up, Up::direction);
+    let settings = Settings::resolve(args, &scene.settings)?;
     phases.load = start.elapsed().as_secs_f64();
 
     // A scene to a world, and the camera in it.
@@ -72,7 +75,7 @@ pub(super) fn run(args: &Render) -> Result<u8> {
         phases.build = start.elapsed().as_secs_f64();
         busy.finish_and_clear();
     };
-    match backend(args.accel)? {
+    match chosen {
         #[cfg(feature = "embree")]
         Chosen::Embree => {
             let embree = EmbreeAccelerator::build(geometry, threads)?;
@@ -155,7 +158,11 @@ fn finish<A: Accelerator>(
         batch: Wavefront::DEFAULT_BATCH,
         stop: Some(job.stop),
     };
-    let bar = progress::bar(job.args, region.pixels() as u64 * settings.samples_per_pixel);
+    job.stop.store(false, Ordering::Relaxed);
+    let bar = progress::bar(
+        job.args,
+        (region.pixels() as u64).saturating_mul(settings.samples_per_pixel),
+    );
     let rendered = render(&tracer, &render_job, &|paths| bar.inc(paths))?;
     bar.finish_and_clear();
     phases.render = rendered.seconds;
@@ -196,26 +203,22 @@ fn replay<A: Accelerator>(
     pixel: [u32; 2],
     sample: u64,
 ) -> Result<u8> {
-    let [width, height] = job.settings.size;
-    if pixel[0] >= width || pixel[1] >= height {
-        return Err(Error::Usage(format!("--replay: the image is {width}x{height}")));
-    }
     let region = Region { start: pixel, end: [pixel[0] + 1, pixel[1] + 1] };
     let found = crate::render::replay(tracer, region, sample);
     report::replayed(job, tracer.world, &found);
     Ok(DONE)
 }
 
-/// A flag that the first Ctrl-C sets; the second one ends the process with code 130.
+/// A flag that Ctrl-C sets; where it finds it set already it ends the process with code 130. It is set from the
+/// beginning, because until the render starts (and takes it down) there is nothing to write.
 fn stop_flag() -> Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
+    let stop = Arc::new(AtomicBool::new(true));
     let failed = |e| Error::Usage(format!("cannot handle signals: {e}"));
     for &signal in TERM_SIGNALS {
-        // In this order: the second signal finds the flag set by the first.
+        // In this order: a signal must not find the flag that it has set itself.
         signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone())
             .map_err(failed)?;
         signal_hook::flag::register(signal, stop.clone()).map_err(failed)?;
     }
-    debug_assert!(!stop.load(Ordering::Relaxed));
     Ok(stop)
 }

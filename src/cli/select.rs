@@ -1,18 +1,18 @@
 //! Command line over scene file over defaults: what a render will really use.
 
-use super::args::{Render, Up, numbers, rgb};
-use crate::camera::{Camera, frame_points};
-use crate::error::{Error, Result};
+use super::args::Render;
+use super::values::{self, Env};
+use crate::camera::{Camera, View, frame_points};
+use crate::error::{Error, Result, unknown_name};
 use crate::film::Region;
-use crate::filter::{Filter, FilterKind};
+use crate::filter::Filter;
 use crate::image::ToneMap;
-use crate::load;
+use crate::load::Surroundings;
 use crate::math::{DVec3, Rgb};
 use crate::render::Aov;
 use crate::sampling::SamplerKind;
-use crate::scene::{self, ColorInput, Effects, Environment, Material, Projection, Scene, Surface};
+use crate::scene::{self, Effects, Projection, SceneSettings};
 use crate::world::World;
-use std::path::Path;
 
 /// Every setting of a render, resolved.
 #[derive(Clone, Debug)]
@@ -32,110 +32,85 @@ pub(super) struct Settings {
 
 impl Settings {
     /// # Errors
-    /// A usage error for a name that does not exist or a crop outside the image.
-    pub(super) fn resolve(args: &Render, scene: &Scene) -> Result<Self> {
-        let file = &scene.settings;
+    /// A usage error for a name that does not exist, and for pixels outside the image.
+    pub(super) fn resolve(args: &Render, file: &SceneSettings) -> Result<Self> {
         let size = args.size.or(file.size).unwrap_or([1280, 720]);
-        let region = match args.crop {
-            None => Region::full(size),
-            Some([x0, y0, x1, y1]) if x1 <= size[0] && y1 <= size[1] => {
-                Region { start: [x0, y0], end: [x1, y1] }
-            }
-            Some(_) => {
-                let [w, h] = size;
-                return Err(Error::Usage(format!("--crop reaches beyond the image of {w}x{h}")));
-            }
-        };
-        let effects = args.effects.as_ref().or(file.effects.as_ref());
-        let sampler = args.sampler.as_ref().or(file.sampler.as_ref());
-        let tonemap = args.tonemap.as_ref().or(file.tonemap.as_ref());
-        let filter = args.filter.as_ref().or(file.filter.as_ref());
+        check_pixels(args, size)?;
+        let filter = file.filter.as_ref().map(|text| Filter::parse(text)).transpose()?;
         Ok(Self {
             size,
-            region,
+            region: args.crop.map_or(Region::full(size), |[x0, y0, x1, y1]| Region {
+                start: [x0, y0],
+                end: [x1, y1],
+            }),
             samples_per_pixel: args.spp.or(file.samples_per_pixel).unwrap_or(128),
             max_depth: args.max_depth.or(file.max_depth).unwrap_or(u32::MAX),
-            effects: named_or_default(effects, &Effects::ALL, "effects")?,
-            sampler: named_or_default(sampler, &SamplerKind::ALL, "sampler")?,
+            effects: said(args.effects, &file.effects, &Effects::ALL, "effects")?,
+            sampler: said(args.sampler, &file.sampler, &SamplerKind::ALL, "sampler")?,
             seed: args.seed.or(file.seed).unwrap_or(0),
-            filter: filter.map_or(Ok(Filter::default()), |text| parse_filter(text))?,
+            filter: args.filter.or(filter).unwrap_or_default(),
             exposure: args.exposure.or(file.exposure),
-            tonemap: named_or_default(tonemap, &ToneMap::ALL, "tone map")?,
-            aovs: args.aov.iter().map(|n| named(n, &Aov::ALL, "AOV")).collect::<Result<_>>()?,
+            tonemap: said(args.tonemap, &file.tonemap, &ToneMap::ALL, "tone map")?,
+            aovs: args.aov.clone(),
         })
     }
 }
 
-/// The value called `name`, or a usage error that lists the names and suggests one.
-fn named<T: Copy>(name: &str, all: &[(&str, T)], kind: &str) -> Result<T> {
-    all.iter()
-        .find(|(n, _)| *n == name)
-        .map(|(_, value)| *value)
-        .ok_or_else(|| Error::Usage(load::unknown_name(kind, name, all.iter().map(|(n, _)| *n))))
-}
-
-fn named_or_default<T>(name: Option<&String>, all: &[(&str, T)], kind: &str) -> Result<T>
-where
-    T: Copy + Default,
-{
-    name.map_or(Ok(T::default()), |name| named(name, all, kind))
-}
-
-/// A filter's name, and its radius if that is said.
-fn parse_filter(description: &str) -> Result<Filter> {
-    let name = description.split(':').next().unwrap_or_default();
-    named(name, &FilterKind::ALL.map(|(name, kind, _)| (name, kind)), "filter")?;
-    Filter::parse(description)
-}
-
-/// The material that `--override-material` gives to every surface.
-///
-/// # Errors
-/// A usage error where it cannot be understood.
-pub(super) fn override_material(args: &Render) -> Result<Option<Material>> {
-    let Some(material) = &args.override_material else { return Ok(None) };
-    let usage = |e| Error::Usage(format!("--override-material {material}: {e}"));
-    let albedo = material
-        .strip_prefix("diffuse:")
-        .ok_or_else(|| usage("expected diffuse:R,G,B".into()))
-        .and_then(|values| rgb(values).map_err(usage))?;
-    let surface = Surface::Lambert { albedo: ColorInput::constant(albedo) };
-    Ok(Some(Material::new("override", surface)))
-}
-
-/// Applies `--up` and `--env`.
-///
-/// # Errors
-/// A usage error where one cannot be understood; an image error where the environment cannot be read.
-pub(super) fn override_scene(args: &Render, scene: &mut Scene) -> Result<()> {
-    match args.up {
-        Some(Up::Y) => scene.up = DVec3::Y,
-        Some(Up::Z) => scene.up = DVec3::Z,
-        None => {}
+/// What the command line says, or else the scene file by name, or else the default.
+fn said<T: Copy + Default>(
+    on_command_line: Option<T>,
+    in_file: &Option<String>,
+    all: &'static [(&'static str, T)],
+    kind: &'static str,
+) -> Result<T> {
+    match (on_command_line, in_file) {
+        (Some(value), _) => Ok(value),
+        (None, Some(name)) => values::named(kind, all)(name).map_err(Error::Usage),
+        (None, None) => Ok(T::default()),
     }
-    if let Some(env) = &args.env {
-        scene.environment = Some(environment(env, scene)?);
+}
+
+/// What options say against each other, whatever the scene says.
+///
+/// # Errors
+/// A usage error for pixels outside an image of `--size`, and for a camera that sees nothing.
+pub(super) fn check(args: &Render) -> Result<()> {
+    if let Some(size) = args.size {
+        check_pixels(args, size)?;
+    }
+    if let (Some(from), Some(to)) = (args.camera_from, args.camera_to) {
+        // Where no up is said, one that cannot be wrong.
+        let up = args.camera_up.unwrap_or_else(|| (to - from).any_orthogonal_vector());
+        Camera::perspective(&View { from, to, up }, [1, 1], DEFAULT_FOV)
+            .map_err(|error| Error::Usage(error.to_string()))?;
     }
     Ok(())
 }
 
-fn environment(text: &str, scene: &mut Scene) -> Result<Environment> {
-    let usage = |e| Error::Usage(format!("--env {text}: {e}"));
-    if let Some(values) = text.strip_prefix("constant:") {
-        return Ok(Environment::Constant { radiance: rgb(values).map_err(usage)? });
+fn check_pixels(args: &Render, [width, height]: [u32; 2]) -> Result<()> {
+    let crop = args.crop.map(|[_, _, x1, y1]| ("--crop", [x1, y1]));
+    let replay = args.replay.map(|([x, y], _)| ("--replay", [x, y].map(|n| n.saturating_add(1))));
+    for (option, [x, y]) in crop.into_iter().chain(replay) {
+        if x > width || y > height {
+            let message = format!("{option} reaches beyond the image of {width}x{height}");
+            return Err(Error::Usage(message));
+        }
     }
-    if let Some(values) = text.strip_prefix("sky:") {
-        let [elevation, azimuth] = numbers(values).map_err(usage)?;
-        return Ok(Environment::Sky {
-            elevation,
-            azimuth,
-            turbidity: 3.0,
-            ground_albedo: Rgb::splat(0.3),
-            scale: 1.0,
-        });
-    }
-    let image = load::add_environment_image(scene, Path::new(text))?;
-    Ok(Environment::Image { image, scale: Rgb::WHITE, rotation: 0.0 })
+    Ok(())
+}
+
+/// What `--env` puts around the scene.
+///
+/// # Errors
+/// An image error where it cannot be read.
+pub(super) fn surroundings(args: &Render) -> Result<Option<Surroundings>> {
+    args.env
+        .as_ref()
+        .map(|env| match env {
+            Env::Computed(environment) => Ok(Surroundings::computed(*environment)),
+            Env::File(path) => Surroundings::image(path, Rgb::WHITE, 0.0),
+        })
+        .transpose()
 }
 
 /// The camera to render with, and its description for the user.
@@ -151,9 +126,9 @@ pub(super) fn camera(
 ) -> Result<(Camera, scene::Camera)> {
     let mut camera = match &args.camera {
         Some(name) => {
-            let all: Vec<_> = cameras.iter().map(|c| (c.name.as_str(), ())).collect();
-            named(name, &all, "camera")?;
-            cameras.iter().find(|c| c.name == *name).cloned()
+            let found = cameras.iter().find(|c| c.name == *name).cloned();
+            let known = cameras.iter().map(|c| c.name.as_str());
+            Some(found.ok_or_else(|| Error::Usage(unknown_name("camera", name, known)))?)
         }
         None => cameras.first().cloned(),
     };

@@ -8,7 +8,7 @@ mod sampler;
 
 pub use sampler::FilterSampler;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, unknown_name};
 use crate::math::fun::double;
 use std::f64::consts::PI;
 use std::fmt;
@@ -69,9 +69,8 @@ impl Filter {
             None => (description, None),
         };
         let Some(&(_, kind, default)) = FilterKind::ALL.iter().find(|(n, ..)| *n == name) else {
-            let names = FilterKind::ALL.map(|(name, ..)| name).join(", ");
-            let message = format!("there is no filter `{name}`; there are: {names}");
-            return Err(Error::Usage(message));
+            let known = FilterKind::ALL.map(|(name, ..)| name);
+            return Err(Error::Usage(unknown_name("filter", name, known)));
         };
         let radius = match radius {
             None => Some(default),
@@ -153,8 +152,11 @@ mod tests {
     #[test]
     fn refuses_with_advice() {
         let message = |text| Filter::parse(text).unwrap_err().to_string();
-        assert!(message("bocks").contains("box, tent, gaussian, mitchell"));
-        assert!(message("").contains("blackman-harris, lanczos"));
+        let advice = message("bax");
+        assert!(
+            advice.starts_with("unknown filter `bax`; did you mean `box`? Known: `box`, `tent`")
+        );
+        assert!(message("").ends_with("`blackman-harris`, `lanczos`"));
         for text in
             ["box:", "box:0", "box:-1", "box:nan", "box:inf", "box:17", "box:1:2", "box:1px"]
         {

@@ -1,18 +1,46 @@
-//! An environment image that the command line names, added to a scene that is already loaded.
+//! What surrounds a scene, read before the scene is: an image that cannot be read is found at once.
 
 use crate::error::Result;
-use crate::image::{ColorSpace, read};
-use crate::scene::{ImageId, Scene};
-use std::path::Path;
+use crate::image::{ColorSpace, Image, read};
+use crate::math::Rgb;
+use crate::scene::{Environment, ImageId, Scene};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Reads the image at `path` (radiance: linear for HDR and EXR, sRGB for the rest) into `scene`.
-///
-/// # Errors
-/// [`crate::error::Error::Io`] or `Image` when it cannot be read.
-pub fn add_environment_image(scene: &mut Scene, path: &Path) -> Result<ImageId> {
-    let image = read(path, ColorSpace::Srgb)?;
-    scene.images.push(Arc::new(image));
-    scene.inputs.push(path.to_path_buf());
-    Ok(ImageId(scene.images.len() as u32 - 1))
+/// An environment that belongs to no scene yet.
+#[derive(Debug)]
+pub struct Surroundings {
+    /// Its image is `image`, whatever id it says.
+    environment: Environment,
+    image: Option<(PathBuf, Image)>,
+}
+
+impl Surroundings {
+    /// Surroundings without an image.
+    pub fn computed(environment: Environment) -> Self {
+        Self { environment, image: None }
+    }
+
+    /// The image at `path` (radiance: linear for HDR and EXR, sRGB for the rest), times `scale`, turned by
+    /// `rotation` degrees.
+    ///
+    /// # Errors
+    /// [`crate::error::Error::Io`] or `Image` when it cannot be read.
+    pub fn image(path: &Path, scale: Rgb, rotation: f64) -> Result<Self> {
+        let image = Some((path.to_path_buf(), read(path, ColorSpace::Srgb)?));
+        let environment = Environment::Image { image: ImageId(0), scale, rotation };
+        Ok(Self { environment, image })
+    }
+
+    /// Puts them around `scene`, whose other images are all there.
+    pub(super) fn surround(mut self, scene: &mut Scene) {
+        if let (Environment::Image { image: id, .. }, Some((path, image))) =
+            (&mut self.environment, self.image)
+        {
+            *id = ImageId(scene.images.len() as u32);
+            scene.images.push(Arc::new(image));
+            scene.inputs.push(path);
+        }
+        scene.environment = Some(self.environment);
+    }
 }

@@ -24,9 +24,9 @@ mod scene_file;
 mod warning_list;
 
 pub use crate::image::ColorSpace;
-pub use environment::add_environment_image;
+pub use environment::Surroundings;
 pub use fingerprint::fingerprint;
 pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;
 pub use obj::{LoadedModel, load_obj};
-pub use scene_file::{LoadOptions, load_scene, load_scene_with, unknown_name};
+pub use scene_file::{LoadOptions, load_scene, load_scene_with};

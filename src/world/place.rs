@@ -1,7 +1,7 @@
 //! Placements to geometry: one origin for the world, single placements baked, repeated ones instanced.
 //!
-//! All of it in `f64`, rounded to `f32` once. Triangles whose material may be cut out go to meshes of
-//! their own, so that hit filters are asked about those alone; the vertex buffers are shared.
+//! All of it in `f64`, rounded to `f32` once. Triangles that any placement shows with a cut-out material go
+//! to meshes of their own, so that hit filters are asked about those alone; the vertex buffers are shared.
 
 use crate::geometry::{Buffer, Geometry, Instance, Object, TriangleMesh};
 use crate::math::{Affine, DAffine3, DVec3, Vec3};
@@ -28,6 +28,32 @@ pub(super) struct Placed {
     pub(super) instances: Vec<(Option<MaterialId>, bool)>,
 }
 
+/// How the placements of a model show it.
+#[derive(Clone, Copy, Default)]
+struct Shown {
+    times: usize,
+    /// With its own materials, somewhere.
+    own: bool,
+    /// With a cut-out material instead of its own, somewhere.
+    cut_out: bool,
+}
+
+impl Shown {
+    fn add(&mut self, material_override: Option<MaterialId>, materials: &[Material]) {
+        self.times += 1;
+        match material_override {
+            None => self.own = true,
+            Some(id) => self.cut_out |= materials[id.index()].is_cut_out(),
+        }
+    }
+
+    /// Whether hit filters must be asked about triangles of the model's material `own`: an instance cannot
+    /// have a mesh of its own, so one that is cut out decides for all.
+    fn needs_filter(self, own: &Material) -> bool {
+        self.cut_out || self.own && own.is_cut_out()
+    }
+}
+
 /// Places every model of the scene.
 pub(super) fn place(scene: &Scene, materials: &[Material]) -> Placed {
     let origin = world_origin(scene);
@@ -38,18 +64,20 @@ pub(super) fn place(scene: &Scene, materials: &[Material]) -> Placed {
         object_surfaces: Vec::new(),
         instances: Vec::new(),
     };
-    let mut uses = vec![0_usize; scene.models.len()];
+    let mut shown = vec![Shown::default(); scene.models.len()];
     for placement in &scene.placements {
-        uses[placement.model.index()] += 1;
+        shown[placement.model.index()].add(placement.material_override, materials);
     }
     // The object made of each model that is placed more than once, and its own origin.
     let mut objects: Vec<Option<(u32, DVec3)>> = vec![None; scene.models.len()];
     for placement in &scene.placements {
         let model = &scene.models[placement.model.index()];
+        let shown = shown[placement.model.index()];
+        let filtered = |own: MaterialId| shown.needs_filter(&materials[own.index()]);
         let to_world = DAffine3::from_translation(-origin) * placement.world_from_object;
-        if uses[placement.model.index()] == 1 {
+        if shown.times == 1 {
             for mesh in &model.meshes {
-                let parts = bake(mesh, &to_world, placement.material_override, materials);
+                let parts = bake(mesh, &to_world, placement.material_override, filtered);
                 for (mesh, surface) in parts {
                     placed.geometry.meshes.push(mesh);
                     placed.surfaces.push(surface);
@@ -58,7 +86,7 @@ pub(super) fn place(scene: &Scene, materials: &[Material]) -> Placed {
             continue;
         }
         let (object, object_origin) = *objects[placement.model.index()]
-            .get_or_insert_with(|| add_object(model, materials, &mut placed));
+            .get_or_insert_with(|| add_object(model, filtered, &mut placed));
         let world_from_object = to_world * DAffine3::from_translation(object_origin);
         placed.geometry.instances.push(Instance::new(object, Affine::from_f64(&world_from_object)));
         let mirrored = to_world.matrix3.determinant() < 0.0;
@@ -86,22 +114,27 @@ fn world_origin(scene: &Scene) -> DVec3 {
 }
 
 /// A model as an object in its own coordinates, relative to the origin of its first mesh.
-fn add_object(model: &Model, materials: &[Material], placed: &mut Placed) -> (u32, DVec3) {
+fn add_object(
+    model: &Model,
+    filtered: impl Fn(MaterialId) -> bool,
+    placed: &mut Placed,
+) -> (u32, DVec3) {
     let origin = model.meshes.first().map_or(DVec3::ZERO, |m| m.origin);
     let to_object = DAffine3::from_translation(-origin);
     let (meshes, surfaces) =
-        model.meshes.iter().flat_map(|mesh| bake(mesh, &to_object, None, materials)).unzip();
+        model.meshes.iter().flat_map(|mesh| bake(mesh, &to_object, None, &filtered)).unzip();
     placed.geometry.objects.push(Object { meshes });
     placed.object_surfaces.push(surfaces);
     (placed.geometry.objects.len() as u32 - 1, origin)
 }
 
-/// Transforms a mesh and splits it into its opaque and its cut-out triangles (each only if there are any).
+/// Transforms a mesh and splits it into the triangles of materials that are not and that are `filtered`
+/// (each only if there are any).
 fn bake(
     mesh: &MeshData,
     map: &DAffine3,
     material_override: Option<MaterialId>,
-    materials: &[Material],
+    filtered: impl Fn(MaterialId) -> bool,
 ) -> Vec<(TriangleMesh, SurfaceMesh)> {
     let positions = mesh
         .positions
@@ -127,12 +160,11 @@ fn bake(
     let normals = Buffer::new(normals);
     let uvs = Buffer::new(mesh.uvs.clone());
 
-    let material_of = |i: usize| material_override.unwrap_or(mesh.materials[i]);
     [false, true]
         .into_iter()
-        .filter_map(|filtered| {
+        .filter_map(|part| {
             let chosen: Vec<usize> = (0..mesh.triangles.len())
-                .filter(|&i| materials[material_of(i).index()].is_cut_out() == filtered)
+                .filter(|&i| filtered(mesh.materials[i]) == part)
                 .collect();
             if chosen.is_empty() {
                 return None;
@@ -145,11 +177,15 @@ fn bake(
             let surface = SurfaceMesh {
                 normals: normals.clone(),
                 uvs: uvs.clone(),
-                materials: chosen.iter().map(|&i| material_of(i)).collect(),
+                materials: chosen
+                    .iter()
+                    .map(|&i| material_override.unwrap_or(mesh.materials[i]))
+                    .collect(),
                 lines: chosen.iter().filter_map(|&i| mesh.lines.get(i).copied()).collect(),
             };
             let triangles = Buffer::new(chosen.iter().map(triangle).collect());
-            Some((TriangleMesh { positions: positions.clone(), triangles, filtered }, surface))
+            let positions = positions.clone();
+            Some((TriangleMesh { positions, triangles, filtered: part }, surface))
         })
         .collect()
 }

@@ -1,8 +1,11 @@
 //! Backends against brute force, ray by ray, on scenes with instances and filters.
 
-use glint::accel::{Accelerator, AcceptAll, BruteForce, HitFilter};
+#[cfg(feature = "embree")]
+use glint::accel::HitFilter;
+use glint::accel::{Accelerator, AcceptAll, BruteForce};
 use glint::geometry::{Geometry, Hit, Instance, NONE, Object, PrimitiveId, Ray, TriangleMesh};
 use glint::math::{Affine, DAffine3, DMat3, DVec3, Vec3};
+#[cfg(feature = "embree")]
 use glint::sampling::{CounterRng, warp};
 use std::sync::Arc;
 

@@ -137,15 +137,14 @@ fn effects_are_said_by_word_or_by_file() {
 #[test]
 fn an_impossible_camera_is_an_error() {
     let bench = Bench::new();
-    bench.file("model.obj", TRIANGLE);
-    for arguments in [
-        &["model.obj", "--fov", "180"][..],
-        &["model.obj", "--camera-from", "0,0,0", "--camera-to", "0,0,0"],
-        &["model.obj", "--camera-up", "0,0,0"],
-    ] {
-        let (code, said) = bench.render(arguments);
-        assert_eq!(code, 1, "{arguments:?}: {said}");
-    }
+    let camera = "from = [0, 0, 3]\nto = [0, 0, 0]\northographic = { height = 2 }\n";
+    let scene = format!("[camera.front]\n{camera}[[object]]\nfile = 'model.obj'\n");
+    bench.file("model.obj", TRIANGLE).file("scene.toml", scene);
+    // Impossible with this scene only; what is impossible with any is wrong usage.
+    let (code, said) = bench.render(&["scene.toml", "--camera-to", "0,0,3"]);
+    assert_eq!(code, 1, "{said}");
+    let (code, said) = bench.render(&["scene.toml", "--fov", "40"]);
+    assert_eq!(code, 2, "{said}");
 }
 
 #[test]
@@ -269,32 +268,4 @@ fn a_replayed_sample_is_the_one_that_was_rendered() {
     let output = bench.glint(&[&["render"], &env[..], &["--replay", "4,4,0"]].concat());
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(said.contains(&format!("radiance {red} ")), "{red}: {said}");
-}
-
-/// A child that does not outlive its test.
-struct Child(std::process::Child);
-
-impl Drop for Child {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-    }
-}
-
-#[test]
-fn a_signal_writes_what_there_is_and_exits_with_3() {
-    let bench = Bench::new();
-    bench.file("model.obj", TRIANGLE);
-    let child = Command::new(env!("CARGO_BIN_EXE_glint"))
-        .args(["render", "model.obj", "--size", "512x512", "--spp", "1000000", "-o", "a.exr"])
-        .args(["--quiet"])
-        .current_dir(bench.folder())
-        .spawn();
-    let mut child = Child(child.expect("glint starts"));
-    // The handlers are set before the first file is opened; wait for the render itself.
-    std::thread::sleep(std::time::Duration::from_secs(2));
-    // The shell's own kill: a bare system has no other.
-    let kill = format!("kill -INT {}", child.0.id());
-    assert!(Command::new("bash").args(["-c", &kill]).status().expect("bash").success());
-    assert_eq!(child.0.wait().expect("it ends").code(), Some(3));
-    assert!(channels(&bench.path("a.exr")).metadata.contains_key("glint.samples"));
 }

@@ -106,6 +106,16 @@ fn materials_that_no_one_sees_are_not_looked_at() {
     assert!(!said.contains(".png"), "{said}");
 }
 
+#[test]
+fn an_environment_that_is_replaced_is_not_looked_at() {
+    let bench = Bench::new();
+    bench.file("model.obj", TRIANGLE).file("broken.hdr", "no image");
+    let scene = "[[object]]\nfile = 'model.obj'\n[environment.image]\nfile = 'broken.hdr'\n";
+    bench.file("scene.toml", scene);
+    says(&bench, &["scene.toml"], 1, &["scene.toml:4", "broken.hdr"]);
+    says(&bench, &["scene.toml", "--env", "constant:1,1,1", "--strict"], 0, &["wrote"]);
+}
+
 /// A second core would show: the machine's default here is eight threads.
 #[test]
 fn threads_bounds_every_thread() {

@@ -1,7 +1,8 @@
 //! Loading as it is told: progress in bytes, and one material for everything.
 
-use glint::load::{LoadOptions, load_scene_with};
-use glint::scene::Material;
+use glint::load::{LoadOptions, Surroundings, load_scene_with};
+use glint::math::Rgb;
+use glint::scene::{Environment, ImageId, Material};
 use std::cell::RefCell;
 use std::fs;
 
@@ -32,6 +33,40 @@ fn progress_goes_steadily_to_the_end() {
         assert!(told.is_sorted(), "{name}: {told:?}");
         assert!(told.iter().all(|(_, total)| *total == bytes as u64), "{name}: {told:?}");
         assert_eq!(told.last(), Some(&(bytes as u64, bytes as u64)), "{name}");
+    }
+}
+
+/// An image that no one will see is not read; what is wrong with the table itself still is.
+#[test]
+fn given_surroundings_take_the_place_of_the_files() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("model.obj"), strip(1)).unwrap();
+    fs::write(folder.path().join("broken.hdr"), "no image").unwrap();
+    let grey = image::RgbImage::from_pixel(2, 1, image::Rgb([100; 3]));
+    grey.save(folder.path().join("grey.png")).unwrap();
+    let object = "[[object]]\nfile = 'model.obj'\n[environment.image]\nfile = 'broken.hdr'\n";
+    fs::write(folder.path().join("scene.toml"), object).unwrap();
+    let two = format!("{object}[environment.constant]\nradiance = 1\n");
+    fs::write(folder.path().join("two.toml"), two).unwrap();
+    let load = |name: &str, surroundings| {
+        let options = LoadOptions { surroundings, ..LoadOptions::default() };
+        load_scene_with(&folder.path().join(name), options)
+    };
+    let white = || Environment::Constant { radiance: Rgb::WHITE };
+    let computed = || Some(Surroundings::computed(white()));
+    let image = || Surroundings::image(&folder.path().join("grey.png"), Rgb::WHITE, 30.0).ok();
+
+    assert!(load("scene.toml", None).unwrap_err().to_string().contains("broken.hdr"));
+    assert!(load("two.toml", computed()).unwrap_err().to_string().contains("at once"));
+    for name in ["model.obj", "scene.toml"] {
+        let scene = load(name, computed()).unwrap();
+        assert_eq!(scene.environment, Some(white()));
+        assert!(scene.images.is_empty() && !scene.inputs.iter().any(|p| p.ends_with("broken.hdr")));
+        let scene = load(name, image()).unwrap();
+        let (image, scale, rotation) = (ImageId(0), Rgb::WHITE, 30.0);
+        assert_eq!(scene.environment, Some(Environment::Image { image, scale, rotation }));
+        assert_eq!(scene.images.len(), 1);
+        assert!(scene.inputs.iter().any(|path| path.ends_with("grey.png")));
     }
 }
 

@@ -190,7 +190,7 @@ fn names_that_are_not_there() {
     let text = format!("{material}[override]\n'olt wood' = 'gold'\n[[object]]\nfile = 'tri.obj'");
     rejects(&text, 4, &["unknown MTL material `olt wood`", "did you mean `old wood`?"]);
     rejects("[render]\nsampler = 'sobel'", 2, &["unknown sampler `sobel`", "`sobol`"]);
-    rejects("[film]\nfilter = 'bax'", 2, &["no filter `bax`", "box, tent"]);
+    rejects("[film]\nfilter = 'bax'", 2, &["unknown filter `bax`; did you mean `box`?", "`tent`"]);
     rejects("[film]\nfilter = 'box:99'", 2, &["radius", "up to 16"]);
     rejects("[film]\ntonemap = 'filmic'", 2, &["unknown tone map `filmic`", "agx"]);
     rejects("\nup = 'x'", 2, &["`y` or `z`"]);

@@ -44,6 +44,11 @@ pub(super) fn assemble(document: &Document, source: Source, options: LoadOptions
     if only.is_none() {
         used.extend(placed.iter().filter_map(|file| file.material).chain(overrides.materials()));
     }
+    let mut surroundings = options.surroundings;
+    if let Some(table) = &document.environment {
+        let own = table.get_ref().surroundings(table.span(), source, surroundings.is_some())?;
+        surroundings = surroundings.or(own);
+    }
     let library = add_library(document, source, &used, &mut builder)?;
     let material_of = |name| only.or_else(|| library.get(name).copied());
 
@@ -72,12 +77,7 @@ pub(super) fn assemble(document: &Document, source: Source, options: LoadOptions
     }
     overrides.check_all_met(source)?;
 
-    let mut scene = builder.finish();
-    if let Some(table) = &document.environment {
-        let environment = table.get_ref().environment(table.span(), source, &mut scene)?;
-        scene.environment = Some(environment);
-    }
-    Ok(scene)
+    Ok(builder.finish(surroundings))
 }
 
 /// The files that are placed, and of each whether it is without a material from the scene file somewhere.

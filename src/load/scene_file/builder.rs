@@ -2,7 +2,7 @@
 
 use crate::error::Warning;
 use crate::image::{self, Image};
-use crate::load::{ImageRequest, ImageTable, LoadedModel};
+use crate::load::{ImageRequest, ImageTable, LoadedModel, Surroundings};
 use crate::scene::{ImageId, Material, MaterialId, ModelId, Scene};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -60,9 +60,9 @@ impl Builder {
         self.images.request(path, color_space, location)
     }
 
-    /// The scene with its images decoded, all at once. One that is missing or broken is replaced by a
-    /// stand-in, with a warning where it is named.
-    pub(super) fn finish(self) -> Scene {
+    /// The scene with its images decoded, all at once, and with its surroundings. An image that is missing or
+    /// broken is replaced by a stand-in, with a warning where it is named.
+    pub(super) fn finish(self, surroundings: Option<Surroundings>) -> Scene {
         let Self { mut scene, images } = self;
         let requests = images.into_requests();
         let read = |request: &ImageRequest| image::read(&request.path, request.color_space);
@@ -82,6 +82,9 @@ impl Builder {
             }
             scene.images.push(Arc::new(image));
             scene.inputs.push(request.path);
+        }
+        if let Some(surroundings) = surroundings {
+            surroundings.surround(&mut scene);
         }
         scene
     }

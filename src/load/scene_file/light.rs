@@ -6,9 +6,9 @@ use super::value::{
     Point, Turbidity,
 };
 use crate::error::Result;
-use crate::load;
+use crate::load::Surroundings;
 use crate::math::Rgb;
-use crate::scene::{Environment, Light, Scene};
+use crate::scene::{Environment, Light};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -164,23 +164,35 @@ impl Directional {
     }
 }
 
+/// The kinds of environment.
+enum Kind<'t> {
+    Constant(&'t Constant),
+    Image(&'t ImageTable),
+    Sky(&'t Sky),
+}
+
 impl EnvironmentTable {
-    /// The environment for `scene`, to which its image is added.
+    /// What surrounds the scene; `None` where something else is to take its place: its image is not read.
     ///
     /// # Errors
     /// When there is not exactly one kind, and when the image cannot be read.
-    pub(super) fn environment(
+    pub(super) fn surroundings(
         &self,
         span: Range<usize>,
         source: Source,
-        scene: &mut Scene,
-    ) -> Result<Environment> {
+        replaced: bool,
+    ) -> Result<Option<Surroundings>> {
         let kind = exactly_one([
-            ("constant", self.constant.as_ref().map(|table| Ok(table.environment()))),
-            ("image", self.image.as_ref().map(|table| table.environment(source, scene))),
-            ("sky", self.sky.as_ref().map(|table| Ok(table.environment()))),
+            ("constant", self.constant.as_ref().map(Kind::Constant)),
+            ("image", self.image.as_ref().map(Kind::Image)),
+            ("sky", self.sky.as_ref().map(Kind::Sky)),
         ]);
-        kind.map_err(|message| source.error(span, format!("`environment` {message}")))?
+        match kind.map_err(|message| source.error(span, format!("`environment` {message}")))? {
+            _ if replaced => Ok(None),
+            Kind::Constant(table) => Ok(Some(Surroundings::computed(table.environment()))),
+            Kind::Image(table) => table.surroundings(source).map(Some),
+            Kind::Sky(table) => Ok(Some(Surroundings::computed(table.environment()))),
+        }
     }
 }
 
@@ -191,11 +203,10 @@ impl Constant {
 }
 
 impl ImageTable {
-    fn environment(&self, source: Source, scene: &mut Scene) -> Result<Environment> {
+    fn surroundings(&self, source: Source) -> Result<Surroundings> {
         let path = source.resolve(self.file.get_ref());
-        let image = load::add_environment_image(scene, &path)
-            .map_err(|error| source.error(self.file.span(), error.to_string()))?;
-        Ok(Environment::Image { image, scale: self.scale.rgb, rotation: self.rotation.0 })
+        Surroundings::image(&path, self.scale.rgb, self.rotation.0)
+            .map_err(|error| source.error(self.file.span(), error.to_string()))
     }
 }
 

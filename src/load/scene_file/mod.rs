@@ -64,10 +64,9 @@ mod texture;
 mod transform;
 mod value;
 
-pub use source::unknown_name;
-
 use crate::error::{Error, Result};
 use crate::image::open_regular;
+use crate::load::Surroundings;
 use crate::load::obj::{Materials, load_model};
 use crate::load::progress::Progress;
 use crate::math::DAffine3;
@@ -124,6 +123,8 @@ impl Document {
 pub struct LoadOptions<'a> {
     /// The material of every surface: no other material is looked at, nor the files that it names.
     pub material: Option<Material>,
+    /// What surrounds the scene: the image that the file names for that is not read.
+    pub surroundings: Option<Surroundings>,
     /// Told of bytes read and bytes in all while models are read.
     pub progress: Option<&'a dyn Fn(u64, u64)>,
 }
@@ -189,5 +190,5 @@ fn load_model_alone(path: &Path, options: LoadOptions) -> Result<Scene> {
     let model = builder.add_model(load_model(path, materials, &progress)?, |_| only);
     let world_from_object = DAffine3::IDENTITY;
     builder.scene.placements.push(Placement { model, world_from_object, material_override: None });
-    Ok(builder.finish())
+    Ok(builder.finish(options.surroundings))
 }

@@ -3,7 +3,7 @@
 //! Turns byte spans of the TOML parser into lines, and the parser's messages into ones that say what
 //! to write instead. Knows nothing of what the keys mean.
 
-use crate::error::{Error, Location, Warning};
+use crate::error::{Error, Location, Warning, advice, quoted, unknown_name};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -97,70 +97,14 @@ fn unknown_key(message: &str) -> Option<String> {
     Some(format!("unknown key `{name}`{}", advice(name, &allowed, "Allowed here")))
 }
 
-/// That `name` is not among `known`, and which of them may be meant; `what` is its kind ("material").
-pub fn unknown_name<'n>(
-    what: &str,
-    name: &str,
-    known: impl IntoIterator<Item = &'n str>,
-) -> String {
-    let known: Vec<&str> = known.into_iter().collect();
-    format!("unknown {what} `{name}`{}", advice(name, &known, "Known"))
-}
-
-/// What to write instead of `name`: the likeliest of `known` and the list of them all.
-fn advice(name: &str, known: &[&str], lead: &str) -> String {
-    let suggestion = did_you_mean(name, known.iter().copied())
-        .map_or(".".to_owned(), |known| format!("; did you mean `{known}`?"));
-    let list = if known.is_empty() { "none".to_owned() } else { quoted(known) };
-    format!("{suggestion} {lead}: {list}")
-}
-
-/// The names between backticks and commas; the first thirty of them.
-fn quoted(names: &[&str]) -> String {
-    const SHOWN: usize = 30;
-    let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect();
-    let rest = names.len().saturating_sub(SHOWN);
-    let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
-    shown.join(", ") + &more
-}
-
 /// What stands between `start` at the beginning of `text` and the next `end`.
 fn between<'t>(text: &'t str, start: &str, end: &str) -> Option<&'t str> {
     text.strip_prefix(start)?.split_once(end).map(|found| found.0)
 }
 
-/// The name among `known` that `name` is likeliest to be a misspelling or a part of, if any is likely:
-/// at most a third of its letters are wrong, or one contains the other.
-fn did_you_mean<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
-    let name = name.to_lowercase();
-    let cost = |candidate: &str| {
-        let candidate = candidate.to_lowercase();
-        let distance = strsim::damerau_levenshtein(&name, &candidate);
-        let part = name.len().min(candidate.len()) >= 3
-            && (candidate.contains(&name) || name.contains(&candidate));
-        let close = distance <= (name.chars().count() / 3).max(1);
-        (close || part).then_some(if close { distance } else { 100 + distance })
-    };
-    known
-        .into_iter()
-        .filter_map(|candidate| Some((cost(candidate)?, candidate)))
-        .min()
-        .map(|best| best.1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn suggestions_are_likely_ones_only() {
-        let known = ["vertical_fov", "lens_radius", "focus_distance"];
-        assert_eq!(did_you_mean("lens_radios", known), Some("lens_radius"));
-        assert_eq!(did_you_mean("FOV", known), Some("vertical_fov"));
-        assert_eq!(did_you_mean("focus_dist", known), Some("focus_distance"));
-        assert_eq!(did_you_mean("banana", known), None);
-        assert_eq!(did_you_mean("x", ["y"]), Some("y"));
-    }
 
     #[test]
     fn every_form_of_unknown_key_is_understood() {

@@ -29,7 +29,7 @@ fn forbidden_edges() {
         ("src/accel/mod.rs", "#[cfg(test)] mod tests { use crate::scene::Scene; }"),
         ("src/accel/mod.rs", "use crate::*;"),
         ("src/accel/mod.rs", "use crate as everything;"),
-        ("src/error.rs", "use crate::math::Vec3;"),
+        ("src/error/mod.rs", "use crate::math::Vec3;"),
         ("src/bsdf/lambert.rs", "use crate::world::World;"),
         ("src/light/mod.rs", "use crate::load;"),
         ("src/main.rs", "use glint::render;"),

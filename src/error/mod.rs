@@ -3,6 +3,11 @@
 //! Every error that a user can cause says where (file and line, when there is one), what was found
 //! there, and what to do. Printing is the front end's job: nothing here writes to a terminal.
 
+mod names;
+
+pub use names::unknown_name;
+pub(crate) use names::{advice, quoted};
+
 use std::fmt;
 use std::path::{Path, PathBuf};
 
