@@ -53,10 +53,11 @@ impl BruteForce {
 impl Accelerator for BruteForce {
     fn closest<F: HitFilter>(&self, rays: &[Ray], filter: &F, hits: &mut [Hit]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            // Strictly smaller: exact ties go to the smallest id.
+            // Exact ties go to the smallest id.
+            let nearer = |h: &Hit, best: &Hit| h.t < best.t || (h.t == best.t && h.id < best.id);
             *hit = self
                 .hits(ray, filter)
-                .fold(Hit::MISS, |best, h| if h.t < best.t { h } else { best });
+                .fold(Hit::MISS, |best, h| if nearer(&h, &best) { h } else { best });
         }
     }
 
