@@ -4,7 +4,9 @@
 
 mod accel;
 mod allocation;
+mod backends;
 mod bsdf;
+mod bvh;
 mod camera;
 mod cli;
 mod cli_input;

@@ -3,7 +3,7 @@
 #![cfg(feature = "embree")]
 
 use glint::accel::embree::EmbreeAccelerator;
-use glint::accel::{AcceptAll, HitFilter};
+use glint::accel::{Accelerator, AcceptAll, HitFilter};
 use glint::camera::{Camera, View};
 use glint::film::{Pixels, Region};
 use glint::filter::{Filter, FilterKind, FilterSampler};
@@ -164,19 +164,28 @@ impl Shot {
         Camera::perspective(&view, self.size, self.fov).expect("a valid camera")
     }
 
-    /// Calls `f` with everything that is needed to trace this shot.
+    /// Calls `f` with everything that is needed to trace this shot on Embree.
     pub(crate) fn with_tracer<T>(
         &self,
         world: &World,
         f: impl FnOnce(&Tracer<'_, EmbreeAccelerator>) -> T,
     ) -> T {
-        let accelerator =
-            EmbreeAccelerator::build(world.geometry.clone(), 2).expect("embree builds");
+        let embree = EmbreeAccelerator::build(world.geometry.clone(), 2).expect("embree builds");
+        self.with_tracer_on(world, &embree, f)
+    }
+
+    /// The same on any backend.
+    pub(crate) fn with_tracer_on<A: Accelerator, T>(
+        &self,
+        world: &World,
+        accelerator: &A,
+        f: impl FnOnce(&Tracer<'_, A>) -> T,
+    ) -> T {
         let camera = self.camera(world);
         let filter = FilterSampler::new(Filter { kind: FilterKind::Box, radius: 0.5 });
         f(&Tracer {
             world,
-            accelerator: &accelerator,
+            accelerator,
             camera: &camera,
             filter: &filter,
             sampler: Sampler::new(self.kind, self.seed),
@@ -186,14 +195,25 @@ impl Shot {
     }
 
     pub(crate) fn render(&self, world: &World) -> Rendered {
-        let job = RenderJob {
+        let job = self.job();
+        self.with_tracer(world, |tracer| render(tracer, &job, &|_| ()).expect("it renders"))
+    }
+
+    pub(crate) fn render_on<A: Accelerator>(&self, world: &World, accelerator: &A) -> Rendered {
+        let job = self.job();
+        self.with_tracer_on(world, accelerator, |tracer| {
+            render(tracer, &job, &|_| ()).expect("it renders")
+        })
+    }
+
+    fn job(&self) -> RenderJob<'static> {
+        RenderJob {
             region: self.region.unwrap_or(Region::full(self.size)),
             samples_per_pixel: self.spp,
             threads: self.threads,
             batch: self.batch,
             stop: None,
-        };
-        self.with_tracer(world, |tracer| render(tracer, &job, &|_| ()).expect("it renders"))
+        }
     }
 
     pub(crate) fn pixels(&self, world: &World) -> Pixels {

@@ -1,0 +1,108 @@
+//! The in-house BVH on geometry that is out to break it: piles, needles, powers of ten, nothing at all.
+
+#![cfg(feature = "bvh")]
+
+use crate::accel::sphere;
+use glint::accel::bvh::Bvh;
+use glint::accel::{Accelerator, AcceptAll, BruteForce};
+use glint::geometry::{Geometry, Hit, Ray, TriangleMesh};
+use glint::math::Vec3;
+use glint::sampling::{CounterRng, warp};
+use std::sync::Arc;
+
+fn geometry(positions: Vec<[f32; 3]>) -> Arc<Geometry> {
+    let triangles = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    let mesh = TriangleMesh::new(positions, triangles.collect(), false);
+    Arc::new(Geometry { meshes: vec![mesh], ..Geometry::default() })
+}
+
+fn closest<A: Accelerator>(accelerator: &A, rays: &[Ray]) -> Vec<Hit> {
+    let mut hits = vec![Hit::MISS; rays.len()];
+    accelerator.closest(rays, &AcceptAll, &mut hits);
+    hits
+}
+
+/// Rays from around the middle of `scale`-sized things.
+fn rays(scale: f32, n: u32) -> Vec<Ray> {
+    let mut rng = CounterRng::new(0);
+    let mut two = move || [rng.unit(), rng.unit()];
+    let mut ray = || Ray::new(warp::sphere(two()) * (scale * two()[0]), warp::sphere(two()));
+    (0..n).map(|_| ray()).collect()
+}
+
+#[test]
+fn nothing_is_hit_where_there_is_nothing() {
+    let bvh = Bvh::build(Arc::new(Geometry::default()), 1).expect("it builds");
+    assert!(!closest(&bvh, &[Ray::new(Vec3::ZERO, Vec3::X)])[0].is_hit());
+}
+
+/// A quarter of a million copies of one triangle: no plane tells them apart. Ties go to the smallest id.
+#[test]
+fn a_pile_of_equal_triangles_is_no_trouble() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let pile = geometry(corners.iter().copied().cycle().take(3 * 250_000).collect());
+    let bvh = Bvh::build(pile, 2).expect("it builds");
+    let hit = closest(&bvh, &[Ray::new(Vec3::new(0.2, 0.3, 2.0), -Vec3::Z)])[0];
+    assert_eq!(hit.id.primitive, 0);
+}
+
+/// Triangles whose sizes and places run through 60 powers of ten: each split takes off few of them.
+#[test]
+fn powers_of_ten_are_found_at_every_scale() {
+    let mut positions = Vec::new();
+    for i in 0..6000 {
+        let s = 10.0_f32.powf((i as f32 - 3000.0) / 200.0);
+        positions.extend([[s, -s, -s], [s, s, -s], [s, 0.0, s]]);
+    }
+    let geometry = geometry(positions);
+    let bvh = Bvh::build(geometry.clone(), 2).expect("it builds");
+    let brute = BruteForce::new(geometry);
+    let mut rng = CounterRng::new(0);
+    let rays: Vec<Ray> = (0..300)
+        .map(|i| {
+            let s = 10.0_f32.powf((i as f32 - 150.0) / 10.0);
+            let tilt = Vec3::new(0.0, rng.unit() - 0.5, rng.unit() - 0.5) * 0.2;
+            Ray::new(Vec3::X * s, Vec3::X + tilt)
+        })
+        .collect();
+    let (ours, truth) = (closest(&bvh, &rays), closest(&brute, &rays));
+    assert!(truth.iter().filter(|hit| hit.is_hit()).count() > 250);
+    assert_eq!(ours, truth);
+}
+
+/// From inside a closed sphere no ray escapes: not through edges, not through vertices, not along an axis.
+#[test]
+fn closed_surfaces_do_not_leak() {
+    for (center, radius) in
+        [(Vec3::ZERO, 1.0), (Vec3::new(1e4, -3e4, 2e4), 1.0), (Vec3::ZERO, 1e-6), (Vec3::ZERO, 1e6)]
+    {
+        let mesh = sphere(center, radius, 16, false);
+        let corners: Vec<Vec3> = mesh.positions.iter().map(|p| Vec3::from_array(*p)).collect();
+        let edges = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let edges: Vec<_> = edges.map(|e| e.map(|i| corners[i as usize])).collect();
+        let geometry = Arc::new(Geometry { meshes: vec![mesh], ..Geometry::default() });
+        let bvh = Bvh::build(geometry, 2).expect("it builds");
+        let mut rng = CounterRng::new(0);
+        let mut rays = Vec::new();
+        for origin in (0..40).map(|_| warp::sphere([rng.unit(), rng.unit()]) * (0.5 * radius)) {
+            let origin = origin + center;
+            rays.extend(corners.iter().map(|&corner| Ray::new(origin, corner - origin)));
+            rays.extend(edges.iter().map(|&[a, b]| Ray::new(origin, (a + b) * 0.5 - origin)));
+            let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+            rays.extend(axes.iter().flat_map(|&d| [Ray::new(origin, d), Ray::new(origin, -d)]));
+        }
+        rays.retain(|ray| ray.direction != Vec3::ZERO);
+        let escaped = closest(&bvh, &rays).iter().filter(|hit| !hit.is_hit()).count();
+        assert_eq!(escaped, 0, "of {} rays, radius {radius} around {center}", rays.len());
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_hit_and_no_byte() {
+    let mesh = sphere(Vec3::ZERO, 1.0, 100, false);
+    let geometry = Arc::new(Geometry { meshes: vec![mesh], ..Geometry::default() });
+    let [one, many] = [1, 4].map(|n| Bvh::build(geometry.clone(), n).expect("it builds"));
+    assert_eq!(one.build_stats().bytes, many.build_stats().bytes);
+    let rays = rays(1.5, 10_000);
+    assert_eq!(closest(&one, &rays), closest(&many, &rays));
+}
