@@ -1,7 +1,7 @@
 //! Who is hit: the accelerator boundary, and the backends behind it.
 //!
 //! Knows nothing but `geometry`, so it is tested and timed without a scene. A backend decides only which
-//! primitive is hit; [`resolve`] computes t, u, v and the error bound from the ray and the vertices,
+//! primitive is hit; [`resolve()`] computes t, u, v and the error bound from the ray and the vertices,
 //! so that all backends give the same bits wherever they agree. A batch is the interface: one ray is
 //! a batch of one. A ray's answer never depends on what else is in its batch.
 

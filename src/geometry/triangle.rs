@@ -45,7 +45,8 @@ pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> TriangleHit {
         let inverse = 1.0 / det;
         let q = s.cross(direction);
         t = (s.dot(area_vector) * inverse) as f32;
-        u = ((ac.dot(q) * inverse) as f32).max(0.0).min(1.0);
+        u = ((ac.dot(q) * inverse) as f32).clamp(0.0, 1.0);
+        // Not `clamp`, whose check of its bounds would keep loops over this from being vectorised.
         v = ((-ab.dot(q) * inverse) as f32).max(0.0).min(1.0 - u);
     } else {
         t = (-s.dot(direction) / direction.length_squared()) as f32;

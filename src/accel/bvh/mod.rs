@@ -1,8 +1,8 @@
 //! The in-house BVH: binary by binned SAH, collapsed to eight children a node, traversed one ray at a time.
 //!
 //! Two levels: one hierarchy for the meshes that stand in the world, one for each object, and one over the
-//! instances. Which primitive is hit is decided by the conservative boxes of [`traverse`], by the watertight
-//! edge test of [`woop`], and among those that pass by the distance that [`super::resolve`] computes in `f64`:
+//! instances. Which primitive is hit is decided by the conservative boxes of `traverse`, by the watertight
+//! edge test of `woop`, and among those that pass by the distance that [`super::resolve()`] computes in `f64`:
 //! exact ties go to the smallest id. Knows nothing but `geometry`.
 
 mod binned;

@@ -53,11 +53,11 @@ impl Shear {
     fn project(&self, corner: &[[f32; SIZE]; 3]) -> [[f32; SIZE]; 2] {
         let z = self.axes[2];
         let mut projected = [[0.0; SIZE]; 2];
-        for k in 0..2 {
+        for (k, projected) in projected.iter_mut().enumerate() {
             let axis = self.axes[k];
-            for i in 0..SIZE {
+            for (i, value) in projected.iter_mut().enumerate() {
                 let depth = corner[z][i] - self.origin[z];
-                projected[k][i] = (corner[axis][i] - self.origin[axis]) - self.shear[k] * depth;
+                *value = (corner[axis][i] - self.origin[axis]) - self.shear[k] * depth;
             }
         }
         projected
