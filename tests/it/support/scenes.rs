@@ -195,8 +195,8 @@ impl Shot {
     }
 
     pub(crate) fn render(&self, world: &World) -> Rendered {
-        let job = self.job();
-        self.with_tracer(world, |tracer| render(tracer, &job, &|_| ()).expect("it renders"))
+        let embree = EmbreeAccelerator::build(world.geometry.clone(), 2).expect("embree builds");
+        self.render_on(world, &embree)
     }
 
     pub(crate) fn render_on<A: Accelerator>(&self, world: &World, accelerator: &A) -> Rendered {
