@@ -31,5 +31,8 @@ pub mod trace;
 pub mod film;
 pub mod render;
 
+// Uses.
+pub mod generate;
+
 // Front end.
 pub mod cli;

@@ -1,10 +1,11 @@
 //! What can be said on the command line, each option in the type that it means. Parsing opens no file.
 
 use super::values::{
-    Env, crop, direction, env, field_of_view, filter, finite, named, override_material, point,
-    replay, rgb_fractions, size, threads,
+    Env, count, crop, direction, env, field_of_view, filter, finite, named, override_material,
+    point, replay, rgb_fractions, size, threads,
 };
 use crate::filter::Filter;
+use crate::generate::Kind;
 use crate::image::ToneMap;
 use crate::math::{DVec3, Rgb};
 use crate::render::Aov;
@@ -27,6 +28,9 @@ pub(super) enum Command {
     /// Renders an OBJ model or a TOML scene to EXR, PNG or HDR.
     #[command(after_help = RENDER_EXAMPLES)]
     Render(Box<Render>),
+    /// Writes a procedural OBJ model of any size, to test and to time with.
+    #[command(after_help = GENERATE_EXAMPLES)]
+    Generate(Generate),
 }
 
 const RENDER_EXAMPLES: &str = "\
@@ -133,6 +137,34 @@ pub(super) struct Render {
     /// Trace one sample of one pixel and print what it met
     #[arg(long, value_name = "x,y,sample", value_parser = replay, help_heading = "Machine")]
     pub(super) replay: Option<([u32; 2], u64)>,
+}
+
+const GENERATE_EXAMPLES: &str = "\
+Examples:
+  glint generate terrain -o terrain.obj --triangles 2M
+      terrain.obj and terrain.mtl, 2 000 000 triangles
+  glint generate city -o city.obj --triangles 500k --seed 7
+  glint generate foliage -o grove.obj --triangles 10M
+      grove.obj, grove.mtl and grove-leaf.png";
+
+/// `glint generate`.
+#[derive(Debug, Args)]
+pub(super) struct Generate {
+    /// What to generate: terrain, city, sphereflake, foliage or hairball
+    #[arg(value_parser = named("model", &Kind::ALL))]
+    pub(super) kind: Kind,
+    /// Model to write, .obj; its materials go beside it, under the same name
+    #[arg(short, long, value_name = "FILE.obj")]
+    pub(super) output: PathBuf,
+    /// Number of triangles, at least 2000; k, M and G multiply it
+    #[arg(long, value_name = "N", value_parser = count)]
+    pub(super) triangles: u64,
+    /// Random seed
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Print nothing but errors
+    #[arg(short, long)]
+    pub(super) quiet: bool,
 }
 
 /// Backends.

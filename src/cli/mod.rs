@@ -4,6 +4,7 @@
 //! signal with nothing written.
 
 mod args;
+mod generate;
 mod output;
 mod progress;
 mod render;
@@ -24,12 +25,15 @@ const FAILED: u8 = 1;
 const USAGE: u8 = 2;
 /// Done, but something that was asked for was not met.
 const NOT_MET: u8 = 3;
+/// Ended by a signal, with nothing to show for it.
+const INTERRUPTED: u8 = 130;
 
 /// Runs the command that the process was started with.
 pub fn main() -> ExitCode {
     let args = args::Glint::parse();
     let code = match args.command {
         args::Command::Render(args) => render::run(&args),
+        args::Command::Generate(args) => generate::run(&args),
     };
     ExitCode::from(code.unwrap_or_else(|error| {
         report::error(&error);

@@ -10,7 +10,8 @@ use std::time::Duration;
 const SPINNER: &str = "{spinner} {msg} {elapsed_precise}";
 
 /// While there is.
-const BAR: &str = "{bar:40} {percent:>3} %  {elapsed_precise} elapsed, {eta_precise} to go";
+pub(super) const BAR: &str =
+    "{bar:40} {percent:>3} %  {elapsed_precise} elapsed, {eta_precise} to go";
 
 /// What takes less than this needs no bar.
 const SHORT: Duration = Duration::from_secs(1);
@@ -53,6 +54,6 @@ fn shown(args: &Render, length: Option<u64>, template: &str) -> ProgressBar {
 }
 
 /// The templates are constants, so an invalid one shows in the first run of a test.
-fn style(template: &str) -> ProgressStyle {
+pub(super) fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }

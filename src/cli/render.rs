@@ -210,8 +210,8 @@ fn replay<A: Accelerator>(
 }
 
 /// A flag that Ctrl-C sets; where it finds it set already it ends the process with code 130. It is set from the
-/// beginning, because until the render starts (and takes it down) there is nothing to write.
-fn stop_flag() -> Result<Arc<AtomicBool>> {
+/// beginning, because until the work starts (and takes it down) there is nothing to write.
+pub(super) fn stop_flag() -> Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(true));
     let failed = |e| Error::Usage(format!("cannot handle signals: {e}"));
     for &signal in TERM_SIGNALS {

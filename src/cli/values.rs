@@ -128,3 +128,14 @@ pub(super) fn env(text: &str) -> Result<Env, String> {
         scale: 1.0,
     }))
 }
+
+/// A whole number above zero, with a suffix that multiplies it or without.
+pub(super) fn count(text: &str) -> Result<u64, String> {
+    let suffixes = [('k', 1000), ('K', 1000), ('M', 1_000_000), ('G', 1_000_000_000)];
+    let suffixed = suffixes.iter().find_map(|(s, factor)| Some((text.strip_suffix(*s)?, *factor)));
+    let (digits, factor) = suffixed.unwrap_or((text, 1));
+    let number = digits.parse::<u64>().ok().and_then(|n| n.checked_mul(factor));
+    number
+        .filter(|n| *n > 0)
+        .ok_or_else(|| "expected a number above 0, as in 500000, 500k or 2M".into())
+}

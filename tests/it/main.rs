@@ -16,6 +16,7 @@ mod closed_forms;
 mod cut_outs;
 mod determinism;
 mod filter;
+mod generate;
 mod image;
 mod light;
 mod load_mutations;
