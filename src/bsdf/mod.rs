@@ -208,33 +208,13 @@ pub trait Receive<M> {
     fn receive(&mut self, model: M);
 }
 
-/// Takes whichever model a surface turns out to have, by its own type: nobody has to match on it later.
-pub trait ReceiveAny:
-    Receive<Lambert>
-    + Receive<OrenNayar>
-    + Receive<Mirror>
-    + Receive<Dielectric>
-    + Receive<RoughDielectric>
-    + Receive<Conductor>
-    + Receive<Plastic>
-    + Receive<Principled>
-{
-}
-
-impl<R> ReceiveAny for R where
-    R: Receive<Lambert>
-        + Receive<OrenNayar>
-        + Receive<Mirror>
-        + Receive<Dielectric>
-        + Receive<RoughDielectric>
-        + Receive<Conductor>
-        + Receive<Plastic>
-        + Receive<Principled>
-{
-}
-
-macro_rules! received_into_the_closed_set {
+macro_rules! receive_each {
     ($($model:ident)*) => {
+        /// Takes whichever model a surface turns out to have, by its own type: nobody has to match on it later.
+        pub trait ReceiveAny: $(Receive<$model> +)* {}
+
+        impl<R: $(Receive<$model> +)*> ReceiveAny for R {}
+
         $(impl Receive<$model> for Bsdf {
             fn receive(&mut self, model: $model) {
                 *self = Self::$model(model);
@@ -243,9 +223,7 @@ macro_rules! received_into_the_closed_set {
     };
 }
 
-received_into_the_closed_set!(
-    Lambert OrenNayar Mirror Dielectric RoughDielectric Conductor Plastic Principled
-);
+receive_each!(Lambert OrenNayar Mirror Dielectric RoughDielectric Conductor Plastic Principled);
 
 /// Calls the same method on whichever model it is.
 macro_rules! each {

@@ -29,11 +29,10 @@ impl Isa {
         {
             // The answers are cached by the standard library.
             use std::arch::is_x86_feature_detected as has;
-            if has!("avx512f") && has!("avx512bw") && has!("avx512dq") && has!("avx512vl") {
-                return Self::Avx512;
-            }
             if has!("avx2") && has!("bmi1") && has!("bmi2") {
-                return Self::Avx2;
+                let wide =
+                    has!("avx512f") && has!("avx512bw") && has!("avx512dq") && has!("avx512vl");
+                return if wide { Self::Avx512 } else { Self::Avx2 };
             }
         }
         Self::Portable

@@ -6,7 +6,7 @@ use crate::support::scenes::{cornell, cornell_shot, zoo, zoo_shot};
 use glint::accel::bvh::Bvh;
 
 /// Rays within the rounding of an edge or a silhouette may meet its other side: pixels with such a ray are
-/// counted. One ray in 20 000 may differ, and a pixel of these shots has some 100 to 500 rays.
+/// counted. None was found on Embree 3.13.5 with AVX-512; other kernels of Embree may round a few otherwise.
 #[test]
 fn pictures_are_equal_byte_for_byte_but_for_rays_along_edges() {
     let scenes = [
@@ -20,6 +20,6 @@ fn pictures_are_equal_byte_for_byte_but_for_rays_along_edges() {
         let differing = (0..embree.radiance.len())
             .filter(|&i| embree.radiance[i] != bvh.radiance[i] || embree.alpha[i] != bvh.alpha[i]);
         let (differing, all) = (differing.count(), embree.radiance.len());
-        assert!(100 * differing <= 2 * all, "{name}: {differing} of {all} pixels differ");
+        assert!(1000 * differing <= 2 * all, "{name}: {differing} of {all} pixels differ");
     }
 }

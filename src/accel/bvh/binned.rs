@@ -4,8 +4,6 @@
 //! Interactive Ray Tracing 2007. Subtrees are built in parallel into places that depend on the number of
 //! primitives alone, so the result does not depend on the number of threads.
 
-use super::backend_error;
-use crate::error::Result;
 use crate::geometry::Aabb;
 use crate::math::Vec3;
 
@@ -43,24 +41,27 @@ const PARALLEL: usize = 4096;
 const LEAF_COST: [f32; 2] = [0.9, 0.12];
 
 /// Builds over `boxes` with leaves of at most `leaf_size`. Returns the nodes, root first (none without
-/// primitives; some places stay unused), and the primitives' ids in the order of the leaves.
-///
-/// # Errors
-/// When there are more primitives than 30 bits can count.
-pub(super) fn build(
-    mut boxes: Vec<PrimitiveBox>,
-    leaf_size: usize,
-) -> Result<(Vec<BinaryNode>, Vec<u32>)> {
-    if boxes.len() >= 1 << 30 {
-        return Err(backend_error("more than 2^30 triangles in one object"));
-    }
+/// primitives; some places stay unused), and the primitives' ids in the order of the leaves. There are fewer
+/// than 2^30 primitives.
+pub(super) fn build(mut boxes: Vec<PrimitiveBox>, leaf_size: usize) -> (Vec<BinaryNode>, Vec<u32>) {
     if boxes.is_empty() {
-        return Ok((Vec::new(), Vec::new()));
+        return (Vec::new(), Vec::new());
     }
     let unused = BinaryNode { bounds: Aabb::EMPTY, kind: Kind::Leaf { start: 0, end: 0 } };
     let mut nodes = vec![unused; 2 * boxes.len() - 1];
     subtree(&mut boxes, &mut nodes, Place { first: 0, node: 0, depth: 0 }, leaf_size);
-    Ok((nodes, boxes.iter().map(|b| b.id).collect()))
+    (nodes, boxes.iter().map(|b| b.id).collect())
+}
+
+/// The leaves' ranges of primitives, in their order: leaf number i is the i-th.
+pub(super) fn leaves(nodes: &[BinaryNode]) -> Vec<(u32, u32)> {
+    let range = |node: &BinaryNode| match node.kind {
+        Kind::Leaf { start, end } if start < end => Some((start, end)),
+        _ => None,
+    };
+    let mut leaves: Vec<_> = nodes.iter().filter_map(range).collect();
+    leaves.sort_unstable();
+    leaves
 }
 
 /// Where a subtree lies: its first primitive and its root in the whole, and how deep it is.

@@ -1,6 +1,6 @@
-//! Leaves: triangles by fours, as one array a coordinate.
+//! Leaves: triangles by fours, as one array a coordinate. Knows no rays.
 
-use super::binned::{BinaryNode, Kind, PrimitiveBox};
+use super::binned::{BinaryNode, PrimitiveBox, leaves};
 use crate::geometry::{Aabb, PrimitiveId, TriangleMesh};
 use crate::math::Vec3;
 
@@ -48,14 +48,7 @@ impl Blocks {
                 first
             })
             .collect();
-        let mut leaves: Vec<(u32, u32)> = tree
-            .iter()
-            .filter_map(|node| match node.kind {
-                Kind::Leaf { start, end } if start < end => Some((start, end)),
-                _ => None,
-            })
-            .collect();
-        leaves.sort_unstable();
+        let leaves = leaves(tree);
         let mut blocks = Self { blocks: Vec::with_capacity(leaves.len()), first };
         for (start, end) in leaves {
             let mut block = Block { corners: [[[f32::NAN; SIZE]; 3]; 3], triangles: [0; SIZE] };

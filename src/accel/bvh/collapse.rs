@@ -5,21 +5,21 @@
 //! are there.
 
 use super::backend_error;
-use super::binned::{BinaryNode, Kind, half_area};
+use super::binned::{BinaryNode, Kind, half_area, leaves};
 use super::wide::{Child, WIDTH, WideNode};
 use crate::error::Result;
 
 /// Deepest tree that a traversal's stack has room for, in wide nodes.
 pub(super) const MAX_DEPTH: usize = 80;
 
-/// The wide nodes, root first; none if the tree is empty. Leaf number i of a tree with `leaf_size` above 1 is
-/// block i: leaves are numbered in the order of their primitives.
+/// The wide nodes, root first; none if the tree is empty. Leaves go by their numbers in [`leaves`].
 ///
 /// # Errors
 /// When the tree is deeper than [`MAX_DEPTH`], which the builder's own limit on depth rules out.
-pub(super) fn collapse(tree: &[BinaryNode], leaf_size: u32) -> Result<Vec<WideNode>> {
+pub(super) fn collapse(tree: &[BinaryNode]) -> Result<Vec<WideNode>> {
     let Some(root) = tree.first() else { return Ok(Vec::new()) };
-    let leaf_index = leaf_numbers(tree, leaf_size);
+    let leaves = leaves(tree);
+    let leaf_index = |start: u32| leaves.partition_point(|leaf| leaf.0 < start) as u32;
     let mut nodes = vec![WideNode::EMPTY];
     if let Kind::Leaf { start, .. } = root.kind {
         nodes[0].set(0, &root.bounds, Child::leaf(leaf_index(start)));
@@ -58,28 +58,4 @@ pub(super) fn collapse(tree: &[BinaryNode], leaf_size: u32) -> Result<Vec<WideNo
         }
     }
     Ok(nodes)
-}
-
-/// The number of the leaf that starts with a primitive.
-fn leaf_numbers(tree: &[BinaryNode], leaf_size: u32) -> impl Fn(u32) -> u32 {
-    let mut starts = Vec::new();
-    if leaf_size > 1 {
-        starts = leaf_starts(tree);
-    }
-    move |start| match starts.binary_search(&start) {
-        Ok(i) => i as u32,
-        // Leaves of one primitive are numbered like their primitives.
-        Err(_) => start,
-    }
-}
-
-/// First primitives of all leaves, in order.
-pub(super) fn leaf_starts(tree: &[BinaryNode]) -> Vec<u32> {
-    let leaves = tree.iter().filter_map(|node| match node.kind {
-        Kind::Leaf { start, end } if start < end => Some(start),
-        _ => None,
-    });
-    let mut starts: Vec<u32> = leaves.collect();
-    starts.sort_unstable();
-    starts
 }

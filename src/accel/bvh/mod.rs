@@ -53,7 +53,7 @@ impl Bvh {
     /// Builds with at most `threads` threads (0: all); the result does not depend on their number.
     ///
     /// # Errors
-    /// When there are more triangles than 31 bits can count, or no threads.
+    /// When an object has 2^30 triangles or more, or there are no threads.
     pub fn build(geometry: Arc<Geometry>, threads: usize) -> Result<Self> {
         let start = Instant::now();
         let pool = rayon::ThreadPoolBuilder::new()
@@ -79,9 +79,13 @@ impl Bvh {
 
 impl MeshBvh {
     fn build(meshes: &[TriangleMesh]) -> Result<Self> {
+        // Numbers of triangles and nodes have 32 bits, one of which tells leaves apart.
+        if meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>() >= 1 << 30 {
+            return Err(backend_error("more than 2^30 triangles in one object"));
+        }
         let boxes = blocks::boxes(meshes);
-        let (tree, order) = binned::build(boxes, blocks::SIZE)?;
-        let nodes = collapse::collapse(&tree, blocks::SIZE as u32)?;
+        let (tree, order) = binned::build(boxes, blocks::SIZE);
+        let nodes = collapse::collapse(&tree)?;
         Ok(Self { nodes, blocks: Blocks::new(meshes, &tree, &order) })
     }
 
@@ -97,6 +101,9 @@ impl MeshBvh {
 
 impl InstanceBvh {
     fn build(geometry: &Geometry, objects: &[MeshBvh]) -> Result<Self> {
+        if geometry.instances.len() >= 1 << 30 {
+            return Err(backend_error("more than 2^30 instances"));
+        }
         let inverse = |i: &Instance| i.world_from_object.to_f64().inverse();
         let object_from_world: Vec<_> = geometry.instances.iter().map(inverse).collect();
         let mut boxes = Vec::new();
@@ -116,8 +123,8 @@ impl InstanceBvh {
                 boxes.push(PrimitiveBox { bounds: around, id });
             }
         }
-        let (tree, order) = binned::build(boxes, 1)?;
-        Ok(Self { nodes: collapse::collapse(&tree, 1)?, order, object_from_world })
+        let (tree, order) = binned::build(boxes, 1);
+        Ok(Self { nodes: collapse::collapse(&tree)?, order, object_from_world })
     }
 }
 

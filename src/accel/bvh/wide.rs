@@ -1,4 +1,4 @@
-//! A node with eight children.
+//! A node with eight children, as a ray meets it. Knows neither how it came about nor what leaves hold.
 
 use crate::geometry::Aabb;
 use crate::math::Vec3;
