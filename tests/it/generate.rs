@@ -1,8 +1,6 @@
 //! Procedural models: what is promised of every kind, and the command that writes them.
 
 use glint::generate::{FEWEST_TRIANGLES, Kind, Model, Written, write_obj};
-use glint::load::load_scene;
-use glint::math::Vec3;
 use std::io;
 
 fn text(model: &Model) -> (Vec<u8>, Written) {
@@ -15,7 +13,7 @@ fn text(model: &Model) -> (Vec<u8>, Written) {
 fn every_kind_has_exactly_the_triangles_asked_for() {
     for (name, kind) in Kind::ALL {
         for triangles in [FEWEST_TRIANGLES, 2001, 4999, 10_000, 65_537, 200_003] {
-            let (text, written) = text(&Model { kind, triangles, seed: 1 });
+            let (text, written) = text(&Model { kind, triangles, seed: 0 });
             let starting = |keyword: &[u8]| {
                 text.split(|b| *b == b'\n').filter(|line| line.starts_with(keyword)).count() as u64
             };
@@ -51,6 +49,8 @@ fn bytes_follow_from_the_seed() {
 mod program {
     use super::*;
     use crate::support::program::Bench;
+    use glint::load::load_scene;
+    use glint::math::Vec3;
 
     fn generate(bench: &Bench, arguments: &[&str]) -> (i32, String) {
         let output = bench.glint(&[&["generate"], arguments].concat());
