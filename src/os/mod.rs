@@ -3,8 +3,10 @@
 //! One of the three places where `unsafe` is allowed. Knows nothing of rendering.
 #![allow(unsafe_code)]
 
+mod arena;
 mod isa;
 
+pub use arena::Arena;
 pub use isa::{Isa, Kernel};
 
 /// The most memory that this process has had resident, in bytes; 0 where the system does not say.

@@ -1,61 +1,115 @@
-//! From the binary tree to nodes with eight children.
+//! From the binary tree to nodes of eight children: which binary nodes become children of which.
 //!
 //! Source: I. Wald, C. Benthin, S. Boulos, "Getting Rid of Packets", IEEE Symposium on Interactive Ray Tracing
-//! 2008: of a node's children, the inner one of the largest surface is replaced by its own two, until eight
-//! are there.
+//! 2008: of a node's children, the inner one of the largest surface is replaced by its own two, until the node
+//! is full. Knows nothing of how nodes and leaves are stored.
 
-use super::backend_error;
-use super::binned::{BinaryNode, Kind, half_area, leaves};
-use super::wide::{Child, WIDTH, WideNode};
-use crate::error::Result;
+use super::binned::{BinaryNode, Kind, half_area};
+use super::node::WIDTH;
 
-/// Deepest tree that a traversal's stack has room for, in wide nodes.
-pub(super) const MAX_DEPTH: usize = 80;
+/// A tree of wide nodes, root first.
+#[derive(Debug, Default)]
+pub(super) struct WideTree {
+    pub(super) nodes: Vec<WideNode>,
+    /// Number of leaves.
+    pub(super) leaves: usize,
+    /// Longest way from the root to a node, in nodes.
+    pub(super) depth: usize,
+    /// The most children that a depth-first walk leaves for later.
+    pub(super) pending: usize,
+}
 
-/// The wide nodes, root first; none if the tree is empty. Leaves go by their numbers in [`leaves`].
-///
-/// # Errors
-/// When the tree is deeper than [`MAX_DEPTH`], which the builder's own limit on depth rules out.
-pub(super) fn collapse(tree: &[BinaryNode]) -> Result<Vec<WideNode>> {
-    let Some(root) = tree.first() else { return Ok(Vec::new()) };
-    let leaves = leaves(tree);
-    let leaf_index = |start: u32| leaves.partition_point(|leaf| leaf.0 < start) as u32;
-    let mut nodes = vec![WideNode::EMPTY];
-    if let Kind::Leaf { start, .. } = root.kind {
-        nodes[0].set(0, &root.bounds, Child::leaf(leaf_index(start)));
-        return Ok(nodes);
+/// The children of a wide node.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct WideNode {
+    /// Nodes of the binary tree; those that stay inner first.
+    children: [u32; WIDTH],
+    count: u8,
+    inner: u8,
+    /// Number of the first inner child among the wide nodes; the others follow.
+    first: u32,
+    /// Leaves of all wide nodes before this one.
+    pub(super) leaves_before: u32,
+}
+
+impl WideNode {
+    /// Nodes of the binary tree; those that stay inner first.
+    pub(super) fn children(&self) -> &[u32] {
+        &self.children[..usize::from(self.count)]
     }
-    // (binary node, its wide node, depth): an explicit stack, depth first, so that children lie near parents.
-    let mut open = vec![(0_u32, 0_u32, 1_usize)];
-    while let Some((binary, wide, depth)) = open.pop() {
-        if depth > MAX_DEPTH {
-            return Err(backend_error("the hierarchy is too deep"));
-        }
-        let mut children = Vec::with_capacity(WIDTH);
-        children.push(binary);
-        while children.len() < WIDTH {
-            let area = |&node: &u32| half_area(&tree[node as usize].bounds);
-            let largest = (0..children.len())
-                .filter(|&i| matches!(tree[children[i] as usize].kind, Kind::Inner(_)))
-                .max_by(|&a, &b| area(&children[a]).total_cmp(&area(&children[b])));
-            let Some(i) = largest else { break };
-            let Kind::Inner([left, right]) = tree[children[i] as usize].kind else { break };
-            children[i] = left;
-            children.push(right);
-        }
-        for (place, child) in children.into_iter().enumerate() {
-            let BinaryNode { bounds, kind } = &tree[child as usize];
-            let reference = match kind {
-                Kind::Leaf { start, .. } => Child::leaf(leaf_index(*start)),
-                Kind::Inner(_) => {
-                    nodes.push(WideNode::EMPTY);
-                    let index = nodes.len() as u32 - 1;
-                    open.push((child, index, depth + 1));
-                    Child::node(index)
-                }
-            };
-            nodes[wide as usize].set(place, bounds, reference);
+
+    /// How many of the children are leaves.
+    pub(super) fn leaves(&self) -> u8 {
+        self.count - self.inner
+    }
+
+    /// The wide nodes among the children, in their order.
+    pub(super) fn inner(&self) -> std::ops::Range<usize> {
+        self.first as usize..self.first as usize + usize::from(self.inner)
+    }
+}
+
+/// The wide tree over a binary one.
+pub(super) fn collapse(tree: &[BinaryNode]) -> WideTree {
+    let mut wide = WideTree::default();
+    if tree.is_empty() {
+        return wide;
+    }
+    wide.nodes.push(WideNode::default());
+    // (binary node, its wide node, depth, children left behind on the way): an explicit stack, depth first.
+    let mut open = vec![(0_u32, 0_usize, 1_usize, 0_usize)];
+    while let Some((binary, place, depth, behind)) = open.pop() {
+        let mut node = choose(tree, binary);
+        node.first = wide.nodes.len() as u32;
+        wide.nodes[place] = node;
+        wide.nodes.resize(node.inner().end, WideNode::default());
+        wide.depth = wide.depth.max(depth);
+        let behind = behind + usize::from(node.count) - 1;
+        wide.pending = wide.pending.max(behind + 1);
+        for (&child, place) in node.children().iter().zip(node.inner()) {
+            open.push((child, place, depth + 1, behind));
         }
     }
-    Ok(nodes)
+    let mut leaves = 0;
+    for node in &mut wide.nodes {
+        node.leaves_before = leaves;
+        leaves += u32::from(node.leaves());
+    }
+    wide.leaves = leaves as usize;
+    wide
+}
+
+/// The children of the wide node that begins at `root`.
+fn choose(tree: &[BinaryNode], root: u32) -> WideNode {
+    let mut node = WideNode::default();
+    // Candidates with the surface that opening each would save; leaves are not to be opened.
+    let surface = |child: u32| match tree[child as usize].kind {
+        Kind::Inner(_) => half_area(&tree[child as usize].bounds),
+        Kind::Leaf { .. } => -1.0,
+    };
+    let mut surfaces = [0.0; WIDTH];
+    (node.children[0], surfaces[0]) = (root, surface(root));
+    let mut count = 1;
+    while count < WIDTH {
+        let mut largest = 0;
+        for i in 1..count {
+            if surfaces[i] > surfaces[largest] {
+                largest = i;
+            }
+        }
+        let Kind::Inner([left, right]) = tree[node.children[largest] as usize].kind else { break };
+        (node.children[largest], surfaces[largest]) = (left, surface(left));
+        (node.children[count], surfaces[count]) = (right, surface(right));
+        count += 1;
+    }
+    // Inner ones first; otherwise in the order in which they came.
+    node.children[..count].sort_by_key(|&child| is_leaf(tree, child));
+    node.count = count as u8;
+    let inner = node.children().iter().filter(|&&child| !is_leaf(tree, child)).count();
+    node.inner = inner as u8;
+    node
+}
+
+fn is_leaf(tree: &[BinaryNode], node: u32) -> bool {
+    matches!(tree[node as usize].kind, Kind::Leaf { .. })
 }
