@@ -1,7 +1,7 @@
 //! Leaves: up to four triangles, as one array a coordinate. Knows no rays.
 
 use super::binned::PrimitiveBox;
-use super::node::UNIT;
+use super::node::{LEAF_UNITS, UNIT};
 use crate::geometry::{Aabb, PrimitiveId, TriangleMesh};
 use crate::math::Vec3;
 use bytemuck::{Pod, Zeroable};
@@ -19,7 +19,7 @@ pub(super) struct Block {
     pub(super) triangles: [u32; SIZE],
 }
 
-const _: () = assert!(size_of::<Block>() == 5 * UNIT);
+const _: () = assert!(size_of::<Block>() == LEAF_UNITS * UNIT);
 
 impl Block {
     /// The triangles of those numbers, one to four.

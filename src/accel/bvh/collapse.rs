@@ -1,8 +1,8 @@
-//! From the binary tree to nodes of eight children: which binary nodes become children of which.
+//! From the binary tree to nodes of sixteen children: which binary nodes become children of which.
 //!
-//! Source: I. Wald, C. Benthin, S. Boulos, "Getting Rid of Packets", IEEE Symposium on Interactive Ray Tracing
-//! 2008: of a node's children, the inner one of the largest surface is replaced by its own two, until the node
-//! is full. Knows nothing of how nodes and leaves are stored.
+//! Source: H. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
+//! HPG 2017, section 3.1: of all ways to leave out inner nodes, the one with the least cost by the surface area
+//! heuristic, by dynamic programming from the leaves up. Knows nothing of how nodes and leaves are stored.
 
 use super::binned::{BinaryNode, Kind, half_area};
 use super::node::WIDTH;
@@ -55,11 +55,12 @@ pub(super) fn collapse(tree: &[BinaryNode]) -> WideTree {
     if tree.is_empty() {
         return wide;
     }
+    let splits = best_splits(tree);
     wide.nodes.push(WideNode::default());
     // (binary node, its wide node, depth, children left behind on the way): an explicit stack, depth first.
     let mut open = vec![(0_u32, 0_usize, 1_usize, 0_usize)];
     while let Some((binary, place, depth, behind)) = open.pop() {
-        let mut node = choose(tree, binary);
+        let mut node = children(tree, &splits, binary);
         node.first = wide.nodes.len() as u32;
         wide.nodes[place] = node;
         wide.nodes.resize(node.inner().end, WideNode::default());
@@ -79,37 +80,75 @@ pub(super) fn collapse(tree: &[BinaryNode]) -> WideTree {
     wide
 }
 
-/// The children of the wide node that begins at `root`.
-fn choose(tree: &[BinaryNode], root: u32) -> WideNode {
-    let mut node = WideNode::default();
-    // Candidates with the surface that opening each would save; leaves are not to be opened.
-    let surface = |child: u32| match tree[child as usize].kind {
-        Kind::Inner(_) => half_area(&tree[child as usize].bounds),
-        Kind::Leaf { .. } => -1.0,
-    };
-    let mut surfaces = [0.0; WIDTH];
-    (node.children[0], surfaces[0]) = (root, surface(root));
-    let mut count = 1;
-    while count < WIDTH {
-        let mut largest = 0;
-        for i in 1..count {
-            if surfaces[i] > surfaces[largest] {
-                largest = i;
+/// For an inner node: `[0]` is how many of a wide node's children its left part gets, if it becomes one;
+/// `[i - 1]` how many of i children, if it is left out and has i to itself, or 0 if it is better not left out.
+type Splits = [u8; WIDTH];
+
+/// Cost of a step through a wide node, and of one through a leaf, for each unit of surface.
+const STEP_COST: f32 = 1.0;
+const LEAF_COST: f32 = 1.0;
+
+/// The splits of the least cost.
+fn best_splits(tree: &[BinaryNode]) -> Vec<Splits> {
+    let mut splits = vec![[0; WIDTH]; tree.len()];
+    // Costs of subtrees whose parents are to come: `[i]` with at most i children for them.
+    let mut costs: Vec<[f32; WIDTH + 1]> = Vec::new();
+    // Children come after their parents, left before right: from the back, everything is ready in time.
+    for (node, splits) in tree.iter().zip(&mut splits).rev() {
+        let area = half_area(&node.bounds);
+        match node.kind {
+            Kind::Leaf { start, end } if start == end => {}
+            Kind::Leaf { .. } => costs.push([area * LEAF_COST; WIDTH + 1]),
+            Kind::Inner(_) => {
+                let (Some(left), Some(right)) = (costs.pop(), costs.pop()) else { continue };
+                let mut shared = [f32::INFINITY; WIDTH + 1];
+                let mut of_left = [0; WIDTH + 1];
+                for l in 1..WIDTH {
+                    for r in 1..=WIDTH - l {
+                        let cost = left[l] + right[r];
+                        if cost < shared[l + r] {
+                            (shared[l + r], of_left[l + r]) = (cost, l as u8);
+                        }
+                    }
+                }
+                let alone = area * STEP_COST + shared[WIDTH];
+                splits[0] = of_left[WIDTH];
+                let mut cost = [alone; WIDTH + 1];
+                for i in 2..=WIDTH {
+                    if shared[i] < alone {
+                        (cost[i], splits[i - 1]) = (shared[i], of_left[i]);
+                    }
+                }
+                costs.push(cost);
             }
         }
-        let Kind::Inner([left, right]) = tree[node.children[largest] as usize].kind else { break };
-        (node.children[largest], surfaces[largest]) = (left, surface(left));
-        (node.children[count], surfaces[count]) = (right, surface(right));
-        count += 1;
     }
-    // Inner ones first; otherwise in the order in which they came.
-    node.children[..count].sort_by_key(|&child| is_leaf(tree, child));
-    node.count = count as u8;
-    let inner = node.children().iter().filter(|&&child| !is_leaf(tree, child)).count();
-    node.inner = inner as u8;
-    node
+    splits
 }
 
-fn is_leaf(tree: &[BinaryNode], node: u32) -> bool {
-    matches!(tree[node as usize].kind, Kind::Leaf { .. })
+/// The children of the wide node that begins at `root`.
+fn children(tree: &[BinaryNode], splits: &[Splits], root: u32) -> WideNode {
+    let (mut inner, mut leaves) = (Vec::with_capacity(WIDTH), Vec::with_capacity(WIDTH));
+    // Nodes that may be left out, with how many children their left part would get then; leftmost last.
+    let mut open = Vec::with_capacity(WIDTH);
+    open.push((root, WIDTH, splits[root as usize][0]));
+    while let Some((node, count, of_left)) = open.pop() {
+        match tree[node as usize].kind {
+            Kind::Leaf { .. } => leaves.push(node),
+            Kind::Inner(_) if of_left == 0 => inner.push(node),
+            Kind::Inner([left, right]) => {
+                let left_count = usize::from(of_left);
+                for (node, count) in [(right, count - left_count), (left, left_count)] {
+                    let of_left = if count > 1 { splits[node as usize][count - 1] } else { 0 };
+                    open.push((node, count, of_left));
+                }
+            }
+        }
+    }
+    let mut node = WideNode { inner: inner.len() as u8, ..WideNode::default() };
+    node.count = node.inner + leaves.len() as u8;
+    for (place, child) in node.children.iter_mut().zip(inner.into_iter().chain(leaves)) {
+        *place = child;
+    }
+    node
 }

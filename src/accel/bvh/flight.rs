@@ -7,7 +7,6 @@
 
 use super::Bvh;
 use super::block::SIZE;
-use super::hierarchy::Tree;
 use super::kernel::{Distances, Inside, Kernel, Task};
 use super::node::Reference;
 use super::slot::{self, Found, Slot};
@@ -262,20 +261,13 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
     }
 }
 
-/// Room that the deepest walk needs, in references.
-pub(super) fn stack_room(own: &Tree, objects: &[Tree], instances: &Tree) -> usize {
-    // The end, both roots, and in an instance the way back and the object.
-    let deepest = objects.iter().map(|tree| tree.pending).max().unwrap_or(0);
-    3 + own.pending.max(instances.pending + 2 + deepest)
-}
-
-/// Asks for the four cache lines that a node has.
+/// Asks for the three cache lines that a leaf has; a node has two.
 #[inline(always)]
 fn prefetch(start: *const u8) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        for line in 0..4 {
+        for line in 0..3 {
             let address = start.wrapping_add(64 * line).cast::<i8>();
             // SAFETY: a prefetch reads nothing, whatever the address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(address) };

@@ -1,14 +1,14 @@
 //! All nodes and leaves of a world in one arena: a tree for the meshes that stand in it, one for each object, and one
 //! over the instances.
 //!
-//! Each node is followed by its own leaves, and the inner children of a node lie side by side. Knows how trees are
-//! stored, not how they are built or traversed.
+//! A node's children lie side by side, its inner ones and then its leaves. Knows how trees are stored, not how they are
+//! built or traversed.
 
 use super::backend_error;
 use super::binned::{self, BinaryNode, PrimitiveBox};
 use super::block::{self, Block, Meshes, Numbers};
 use super::collapse::{WideNode, WideTree, collapse};
-use super::node::{Kind, Node, Reference, UNIT};
+use super::node::{Kind, LEAF_UNITS, NODE_UNITS, Node, Reference, UNIT, WIDTH};
 use crate::error::Result;
 use crate::geometry::{Aabb, Geometry, Instance, TriangleMesh};
 use crate::math::{DAffine3, Vec3};
@@ -38,10 +38,6 @@ pub(super) struct Hierarchy {
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, align(32))]
 struct Unit([u8; UNIT]);
-
-/// Units of a node and of a leaf.
-const NODE: usize = size_of::<Node>() / UNIT;
-const LEAF: usize = size_of::<Block>() / UNIT;
 
 /// One tree in the arena.
 pub(super) struct Tree {
@@ -84,7 +80,9 @@ impl Hierarchy {
         // Room for the most there can be: leaves of one triangle, and as many nodes. What is not written costs
         // nothing.
         let memory = || backend_error("not enough memory for the hierarchy");
-        let units = triangles * (NODE + LEAF) + geometry.instances.len() * NODE;
+        let trees = geometry.objects.len() + 2;
+        let units =
+            triangles * (NODE_UNITS + LEAF_UNITS) + (geometry.instances.len() + trees) * NODE_UNITS;
         let mut all = Self { units: Arena::zeroed(units).ok_or_else(memory)?, ..Self::default() };
         all.own = all.add_meshes(&geometry.meshes)?;
         for object in &geometry.objects {
@@ -94,6 +92,13 @@ impl Hierarchy {
         all.add_instances(geometry)?;
         all.units.truncate(all.used);
         Ok(all)
+    }
+
+    /// References that the deepest walk leaves for later.
+    pub(super) fn pending(&self) -> usize {
+        // The end, both roots, and in an instance the way back and the object.
+        let deepest = self.objects.iter().map(|tree| tree.pending).max().unwrap_or(0);
+        3 + self.own.pending.max(self.instances.pending + 2 + deepest)
     }
 
     /// Bytes of all of it.
@@ -127,6 +132,18 @@ impl Hierarchy {
         debug_assert!(reference.kind() == Kind::Leaf as usize);
         // SAFETY: references to leaves are made in `add_tree` only, where the leaves are.
         unsafe { &*self.place(reference).cast() }
+    }
+
+    /// [`Self::node`], if it lies in the arena.
+    pub(super) fn checked_node(&self, reference: Reference) -> Option<&Node> {
+        let is_there = reference.number() + NODE_UNITS <= self.units.len();
+        (is_there && reference.number().is_multiple_of(NODE_UNITS)).then(|| self.node(reference))
+    }
+
+    /// [`Self::block`], if it lies in the arena.
+    pub(super) fn checked_block(&self, reference: Reference) -> Option<&Block> {
+        let is_there = reference.number() + LEAF_UNITS <= self.units.len();
+        is_there.then(|| self.block(reference))
     }
 
     /// The tree of an instance's object, or of the world's own meshes.
@@ -187,61 +204,66 @@ impl Hierarchy {
         wide: &WideTree,
         leaf: Option<&(impl Fn(u32, u32) -> Block + Sync)>,
     ) -> Result<Option<Reference>> {
-        let first = self.used;
-        let leaf_units = if leaf.is_some() { LEAF } else { 0 };
-        // Each node is followed by its leaves.
-        let place = |i: usize| match wide.nodes.get(i) {
-            Some(node) => first + i * NODE + node.leaves_before as usize * leaf_units,
-            None => first + i * NODE + wide.leaves * leaf_units,
-        };
-        self.used = place(wide.nodes.len());
-        if self.used > Reference::NUMBERS {
+        if wide.nodes.is_empty() {
+            return Ok(None);
+        }
+        // The root, then the children of each node, in the order of the nodes.
+        let root = self.used.next_multiple_of(NODE_UNITS);
+        let leaf_units = if leaf.is_some() { LEAF_UNITS } else { 0 };
+        let mut places = Vec::with_capacity(wide.nodes.len());
+        let mut end = root + NODE_UNITS;
+        for node in &wide.nodes {
+            // Nodes begin on cache lines.
+            let place = end.next_multiple_of(if node.inner().is_empty() { 1 } else { NODE_UNITS });
+            places.push(place);
+            end = place + node.inner().len() * NODE_UNITS + usize::from(node.leaves()) * leaf_units;
+        }
+        self.used = end;
+        if end > Reference::NUMBERS.min(self.units.len()) {
             return Err(backend_error("the hierarchy would be larger than 32 GiB"));
         }
-        // Chunks of nodes, with the units that they and their leaves fill.
+        let new_node = |i: usize| {
+            let source = &wide.nodes[i];
+            let mut boxes = [Aabb::EMPTY; WIDTH];
+            for (bounds, &child) in boxes.iter_mut().zip(source.children()) {
+                *bounds = tree[child as usize].bounds;
+            }
+            let boxes = &boxes[..source.children().len()];
+            let instances = leaf.is_none().then_some(source.leaves_before as usize);
+            Node::new(boxes, source.inner().len(), places[i], instances)
+        };
+        let (of_root, mut rest) = self.units[root..end].split_at_mut(NODE_UNITS);
+        of_root.copy_from_slice(bytemuck::cast_slice(&[new_node(0)]));
+        // The children of many nodes at a time, and the units that they fill.
         const CHUNK: usize = 256;
-        let mut rest = &mut self.units[first..self.used];
         let mut chunks = Vec::with_capacity(wide.nodes.len() / CHUNK + 1);
-        for start in (0..wide.nodes.len()).step_by(CHUNK) {
-            let end = (start + CHUNK).min(wide.nodes.len());
-            let (units, behind) = rest.split_at_mut(place(end) - place(start));
-            chunks.push((start..end, units));
-            rest = behind;
+        let mut begin = root + NODE_UNITS;
+        for first in (0..wide.nodes.len()).step_by(CHUNK) {
+            let last = (first + CHUNK).min(wide.nodes.len());
+            let end = places.get(last).copied().unwrap_or(end);
+            let (units, behind) = rest.split_at_mut(end - begin);
+            chunks.push((first..last, begin, units));
+            (begin, rest) = (end, behind);
         }
-        chunks.into_par_iter().for_each(|(range, mut units)| {
+        chunks.into_par_iter().for_each(|(range, begin, units)| {
             for i in range {
                 let source = &wide.nodes[i];
-                let taken = NODE + usize::from(source.leaves()) * leaf_units;
-                let (of_this, behind) = units.split_at_mut(taken);
-                units = behind;
-                let (of_node, of_leaves) = of_this.split_at_mut(NODE);
-                let mut inner = source.inner();
-                let mut node = Node::EMPTY;
-                let mut leaves = 0;
-                for (slot, &child) in source.children().iter().enumerate() {
-                    let child = &tree[child as usize];
-                    let reference = match (leaf_range(child), leaf) {
-                        (None, _) => Reference::new(Kind::Node, place(inner.next().unwrap_or(0))),
-                        (Some((start, end)), Some(leaf)) => {
-                            let at = leaves * LEAF;
-                            let block = leaf(start, end);
-                            of_leaves[at..at + LEAF]
-                                .copy_from_slice(bytemuck::cast_slice(&[block]));
-                            leaves += 1;
-                            Reference::new(Kind::Leaf, place(i) + NODE + at)
-                        }
-                        (Some(_), None) => {
-                            leaves += 1;
-                            let number = source.leaves_before as usize + leaves - 1;
-                            Reference::new(Kind::Instance, number)
-                        }
-                    };
-                    node.set(slot, &child.bounds, reference);
+                let mut place = places[i] - begin;
+                for child in source.inner() {
+                    units[place..place + NODE_UNITS]
+                        .copy_from_slice(bytemuck::cast_slice(&[new_node(child)]));
+                    place += NODE_UNITS;
                 }
-                of_node.copy_from_slice(bytemuck::cast_slice(&[node]));
+                let Some(leaf) = leaf else { continue };
+                for &child in &source.children()[source.inner().len()..] {
+                    let Some((start, end)) = leaf_range(&tree[child as usize]) else { continue };
+                    units[place..place + LEAF_UNITS]
+                        .copy_from_slice(bytemuck::cast_slice(&[leaf(start, end)]));
+                    place += LEAF_UNITS;
+                }
             }
         });
-        Ok((!wide.nodes.is_empty()).then(|| Reference::new(Kind::Node, first)))
+        Ok(Some(Reference::new(Kind::Node, root)))
     }
 }
 

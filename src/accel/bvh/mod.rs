@@ -15,7 +15,10 @@ mod kernel;
 mod node;
 mod ray;
 mod slot;
+mod validate;
 mod woop;
+
+pub use validate::TreeStatistics;
 
 use super::{Accelerator, BuildStats, HitFilter, resolve_all};
 use crate::error::{Error, Result};
@@ -48,8 +51,7 @@ impl Bvh {
             .build()
             .map_err(|error| backend_error(&error.to_string()))?;
         let hierarchy = pool.install(|| Hierarchy::build(&geometry))?;
-        let Hierarchy { own, objects, instances, .. } = &hierarchy;
-        if flight::stack_room(own, objects, instances) + slot::SPARE > slot::ROOM {
+        if hierarchy.pending() + slot::SPARE > slot::ROOM {
             return Err(backend_error("the hierarchy is too deep"));
         }
         let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: hierarchy.bytes() };

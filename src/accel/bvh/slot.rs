@@ -2,6 +2,7 @@
 //!
 //! Knows references, not what they refer to.
 
+use super::binned::HALVE_FROM;
 use super::hierarchy::Hierarchy;
 use super::node::{Reference, WIDTH};
 use super::ray::BoxRay;
@@ -13,7 +14,7 @@ use bytemuck::Zeroable;
 
 /// References that a stack has room for, with what vectors are written beyond its top: both levels as deep as
 /// the builder's limit on depth lets them be, with all but one child of every node left for later.
-pub(super) const ROOM: usize = 2 * (48 + 30) * (WIDTH - 1) + 5 + SPARE;
+pub(super) const ROOM: usize = 2 * (HALVE_FROM as usize + 30) * (WIDTH - 1) + 5 + SPARE;
 
 /// What vectors write beyond a stack's top.
 pub(super) const SPARE: usize = WIDTH;
@@ -44,7 +45,7 @@ pub(super) struct Slot {
     pub(super) references: [u32; ROOM],
     pub(super) entries: [f32; ROOM],
     /// An odd number of cache lines from slot to slot: they do not fall on the same places of the cache.
-    unused: [u32; 24],
+    unused: [u32; 8],
 }
 
 /// A triangle that the ray hits, or none.

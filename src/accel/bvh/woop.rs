@@ -24,7 +24,7 @@ pub(super) struct Shear {
 }
 
 /// Edge functions whose sum is outside of this range may have lost their signs.
-pub(super) const TRUSTED: [f32; 2] = [1e-24, 1e36];
+pub(super) const TRUSTED: std::ops::RangeInclusive<f32> = 1e-24..=1e36;
 
 impl Shear {
     /// For a ray of non-zero direction.

@@ -31,7 +31,7 @@ impl Kernel for Plain {
                 }
                 distances[place] = entries[i];
             }
-            places[place] = node.children[i].0;
+            places[place] = node.child(i).0;
             count += 1;
         }
         top + count
@@ -61,9 +61,12 @@ fn meet(slot: &Slot, node: &Node) -> ([f32; WIDTH], u32) {
         let far = near ^ WIDTH;
         let (near, far) = (&planes[near..near + WIDTH], &planes[far..far + WIDTH]);
         let r = ray.reciprocal[axis];
+        let step = node.step(axis) * r;
+        let near_base = node.origin[axis] * r - ray.near_offset[axis];
+        let far_base = node.origin[axis] * r - ray.far_offset[axis];
         for i in 0..WIDTH {
-            let entry = near[i] * r - ray.near_offset[axis];
-            let exit = far[i] * r - ray.far_offset[axis];
+            let entry = f32::from(near[i]) * step + near_base;
+            let exit = f32::from(far[i]) * step + far_base;
             entries[i] = if entry > entries[i] { entry } else { entries[i] };
             exits[i] = if exit < exits[i] { exit } else { exits[i] };
         }
@@ -72,7 +75,7 @@ fn meet(slot: &Slot, node: &Node) -> ([f32; WIDTH], u32) {
     for i in 0..WIDTH {
         met |= u32::from(entries[i] <= exits[i]) << i;
     }
-    (entries, met)
+    (entries, met & u32::from(node.present))
 }
 
 /// See [`Kernel::inside`].
@@ -81,11 +84,11 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
     let mut flat = [[[0.0; SIZE]; 2]; 3];
     for (flat, corner) in flat.iter_mut().zip(&block.corners) {
         let depths = shear.along(corner, 2);
-        for k in 0..2 {
+        for (k, flat) in flat.iter_mut().enumerate() {
             let places = shear.along(corner, k);
             for i in 0..SIZE {
                 let depth = depths[i] - shear.origin[2];
-                flat[k][i] = (places[i] - shear.origin[k]) - shear.shear[k] * depth;
+                flat[i] = (places[i] - shear.origin[k]) - shear.shear[k] * depth;
             }
         }
     }
@@ -100,7 +103,7 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
         let is_back = !((u > 0.0) | (v > 0.0) | (w > 0.0));
         let sum = u.abs() + v.abs() + w.abs();
         inside |= u32::from(is_front | is_back) << i;
-        sure |= u32::from((sum >= TRUSTED[0]) & (sum <= TRUSTED[1])) << i;
+        sure |= u32::from(TRUSTED.contains(&sum)) << i;
     }
     Inside { inside, unsure: inside & !sure }
 }
@@ -111,7 +114,7 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
     let (o, d) = (slot.origin.as_dvec3().to_array(), slot.direction.as_dvec3().to_array());
     let mut t = [0.0; SIZE];
     let (mut within, mut edge_on) = (0, 0);
-    for i in 0..SIZE {
+    for (i, t) in t.iter_mut().enumerate() {
         let corner = |vertex: usize, axis: usize| f64::from(block.corners[vertex][axis][i]);
         let a = [corner(0, 0), corner(0, 1), corner(0, 2)];
         let ab = [corner(1, 0) - a[0], corner(1, 1) - a[1], corner(1, 2) - a[2]];
@@ -124,8 +127,8 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
         let s = [o[0] - a[0], o[1] - a[1], o[2] - a[2]];
         let det = -(d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]);
         let height = s[0] * normal[0] + s[1] * normal[1] + s[2] * normal[2];
-        t[i] = (height * (1.0 / det)) as f32;
-        within |= u32::from((t[i] > slot.t_min) & (t[i] <= slot.limit)) << i;
+        *t = (height * (1.0 / det)) as f32;
+        within |= u32::from((*t > slot.t_min) & (*t <= slot.limit)) << i;
         edge_on |= u32::from(!((det.abs() > 0.0) & (det.abs() < f64::INFINITY))) << i;
     }
     Distances { t, within, edge_on }
