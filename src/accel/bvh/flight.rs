@@ -251,10 +251,10 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
                 self.begun += 1;
             }
             Reference::LEAVE => slot.leave(&rays[slot.ray as usize], hierarchy),
-            Reference::NOTHING => {}
-            instance => {
-                let instance = hierarchy.order[instance.number()];
-                slot.enter(&rays[slot.ray as usize], instance, hierarchy, geometry);
+            reference => {
+                if let Some(instance) = hierarchy.instance(reference) {
+                    slot.enter(&rays[slot.ray as usize], instance, hierarchy, geometry);
+                }
             }
         }
         Some(slot.top as usize)

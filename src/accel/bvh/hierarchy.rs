@@ -29,7 +29,7 @@ pub(super) struct Hierarchy {
     /// Over the instances.
     pub(super) instances: Tree,
     /// Instances in the order of the leaves.
-    pub(super) order: Vec<u32>,
+    order: Vec<u32>,
     /// For each instance.
     pub(super) object_from_world: Vec<DAffine3>,
 }
@@ -70,12 +70,13 @@ impl Hierarchy {
     /// Builds all trees.
     ///
     /// # Errors
-    /// When there are 2^30 triangles or instances or more, or not enough memory.
+    /// When there are 2^30 triangles or 2^27 instances or more, or not enough memory.
     pub(super) fn build(geometry: &Geometry) -> Result<Self> {
-        // Numbers of nodes, leaves and instances have 30 bits.
+        // References have 30 bits.
         let triangles = geometry.stored_triangles();
-        if triangles.max(geometry.instances.len()) >= 1 << 30 {
-            return Err(backend_error("more than 2^30 triangles or instances"));
+        let instances = geometry.instances.len();
+        if triangles.max(instances * LEAF_UNITS) >= Reference::NUMBERS {
+            return Err(backend_error("more than 2^30 triangles or 2^27 instances"));
         }
         // Room for the most there can be: leaves of one triangle, and as many nodes. What is not written costs
         // nothing.
@@ -92,6 +93,11 @@ impl Hierarchy {
         all.add_instances(geometry)?;
         all.units.truncate(all.used);
         Ok(all)
+    }
+
+    /// How many instances can be hit.
+    pub(super) fn instance_count(&self) -> usize {
+        self.order.len()
     }
 
     /// References that the deepest walk leaves for later.
@@ -144,6 +150,12 @@ impl Hierarchy {
     pub(super) fn checked_block(&self, reference: Reference) -> Option<&Block> {
         let is_there = reference.number() + LEAF_UNITS <= self.units.len();
         is_there.then(|| self.block(reference))
+    }
+
+    /// The instance that is referred to.
+    #[inline]
+    pub(super) fn instance(&self, reference: Reference) -> Option<u32> {
+        self.order.get(reference.number() / LEAF_UNITS).copied()
     }
 
     /// The tree of an instance's object, or of the world's own meshes.

@@ -40,14 +40,14 @@ impl Reference {
         (self.0 >> 30) as usize
     }
 
-    /// Place in the arena, or number of the instance.
+    /// Place in the arena in units.
     #[inline(always)]
     pub(super) fn number(self) -> usize {
         self.0 as usize & (Self::NUMBERS - 1)
     }
 }
 
-/// What a reference refers to.
+/// What a reference refers to. Instances are numbered in steps of [`LEAF_UNITS`], like leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Node,
@@ -91,15 +91,11 @@ impl Node {
         place: usize,
         instances: Option<usize>,
     ) -> Self {
-        let first_leaf = match instances {
-            None => {
-                let place = place + inner * NODE_UNITS;
-                Reference::new(Kind::Leaf, place).0.wrapping_sub((inner * LEAF_UNITS) as u32)
-            }
-            Some(first) => {
-                Reference::new(Kind::Instance, first).0.wrapping_sub((inner * LEAF_UNITS) as u32)
-            }
+        let (kind, number) = match instances {
+            None => (Kind::Leaf, place + inner * NODE_UNITS),
+            Some(first) => (Kind::Instance, first * LEAF_UNITS),
         };
+        let first_leaf = Reference::new(kind, number).0.wrapping_sub((inner * LEAF_UNITS) as u32);
         let all = children.iter().fold(Aabb::EMPTY, |all, b| all.union(*b));
         let [x, y, z] = [0, 1, 2].map(|axis| exponent(all.min[axis], all.max[axis]));
         let last = f32::from_le_bytes([x, y, z, children.len() as u8]);
@@ -114,12 +110,15 @@ impl Node {
         for axis in 0..3 {
             let (origin, step) = (f64::from(node.origin[axis]), f64::from(node.step(axis)));
             for (i, child) in children.iter().enumerate() {
-                // Exact: differences of such numbers fit `f64` where the step is not negligible beside them,
-                // and the step is a power of two.
-                let place = |x: f32| (f64::from(x) - origin) / step;
-                node.planes[axis][i] = place(child.min[axis]).floor().clamp(0.0, 255.0) as u8;
-                node.planes[axis][WIDTH + i] =
-                    place(child.max[axis]).ceil().clamp(0.0, 255.0) as u8;
+                // The quotient may be rounded to a plane on the wrong side; the plane itself is exact.
+                let (min, max) = (f64::from(child.min[axis]), f64::from(child.max[axis]));
+                let plane = |place: f64| origin + place * step;
+                let lower = ((min - origin) / step).floor();
+                let lower = if plane(lower) > min { lower - 1.0 } else { lower };
+                let upper = ((max - origin) / step).ceil();
+                let upper = if plane(upper) < max { upper + 1.0 } else { upper };
+                node.planes[axis][i] = lower.clamp(0.0, 255.0) as u8;
+                node.planes[axis][WIDTH + i] = upper.clamp(0.0, 255.0) as u8;
             }
         }
         node
@@ -146,12 +145,12 @@ fn first_bits(n: usize) -> u16 {
     ((1_u32 << n) - 1) as u16
 }
 
-/// The smallest biased exponent whose 255 steps span from `min` to `max`. Never so small that steps vanish beside the
+/// The smallest biased exponent whose 254 steps span from `min` to `max`: one is left for rounding. Never so small that steps vanish beside the
 /// coordinates, nor outside the normal numbers.
 fn exponent(min: f32, max: f32) -> u8 {
     let extent = f64::from(max) - f64::from(min);
     let smallest = f64::from(min.abs().max(max.abs())) * 2.0_f64.powi(-28);
-    let step = (extent / 255.0).max(smallest).max(f64::from(f32::MIN_POSITIVE));
+    let step = (extent / 254.0).max(smallest).max(f64::from(f32::MIN_POSITIVE));
     // Rounded up to a power of two: 2^(bits - 127).
     let rounded = (step.to_bits() + ((1 << 52) - 1)) >> 52;
     (rounded as i64 - 1023 + 127).clamp(1, 254) as u8

@@ -46,7 +46,7 @@ impl Bvh {
             all.sah_cost = all.sah_cost.max(statistics.sah_cost);
         }
         let seen = Walk::new(&self.hierarchy, &self.hierarchy.instances, None).run()?.leaves;
-        ensure(seen == self.hierarchy.order.len(), "an instance is missing")?;
+        ensure(seen == self.hierarchy.instance_count(), "an instance is missing")?;
         Ok(all)
     }
 }
@@ -99,7 +99,7 @@ impl<'a> Walk<'a> {
                 }
                 (INSTANCE, None) => {
                     statistics.leaves += 1;
-                    let is_there = reference.number() < self.hierarchy.order.len();
+                    let is_there = self.hierarchy.instance(reference).is_some();
                     ensure(is_there, "an instance is out of bounds")?;
                 }
                 _ => return Err(backend_error("a reference is of the wrong kind")),
@@ -150,7 +150,7 @@ const NODE: usize = Kind::Node as usize;
 const LEAF: usize = Kind::Leaf as usize;
 const INSTANCE: usize = Kind::Instance as usize;
 
-/// The box of child `i` of a node, rounded to `f32` outwards.
+/// The box of child `i` of a node, exactly or a little larger.
 fn child_bounds(node: &Node, i: usize) -> Aabb {
     let plane = |axis: usize, side: usize| {
         let steps = f64::from(node.planes[axis][side + i]);
