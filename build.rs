@@ -51,7 +51,7 @@ mod embree {
             .clang_arg(format!("-DGLINT_EMBREE_MAJOR={major}"))
             .allowlist_function("rtc(New|Release|Commit)(Device|Scene|Geometry)")
             .allowlist_function(
-                "rtcSetShared(GeometryBuffer)|rtcSetSceneFlags|rtcAttachGeometryByID",
+                "rtcSetShared(GeometryBuffer)|rtcSetScene(Flags|BuildQuality)|rtcAttachGeometryByID",
             )
             .allowlist_function("rtcSetGeometry(InstancedScene|Transform)")
             .allowlist_function(

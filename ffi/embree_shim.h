@@ -29,4 +29,20 @@ void glint_occluded(RTCScene scene, struct RTCRay *rays, unsigned n, GlintAccept
 /* Has the geometry ask the `accept` of whatever query meets it. */
 void glint_filter_geometry(RTCGeometry geometry);
 
+/* For benchmarks: Embree's calls for several rays at once, on n rays in the layout of the call, without
+ * filters. `coherent` is the hint of that name. The last packet may be partly filled. */
+void glint_closest_8(RTCScene scene, struct RTCRayHit8 *packets, unsigned n, int coherent);
+void glint_closest_16(RTCScene scene, struct RTCRayHit16 *packets, unsigned n, int coherent);
+void glint_occluded_8(RTCScene scene, struct RTCRay8 *packets, unsigned n, int coherent);
+void glint_occluded_16(RTCScene scene, struct RTCRay16 *packets, unsigned n, int coherent);
+
+/* Whether this Embree has calls for streams: 3 has, 4 has not, and traces them ray by ray here. */
+int glint_has_streams(void);
+
+/* Streams of `length` rays, the last one shorter. */
+void glint_closest_stream(RTCScene scene, struct RTCRayHit *rays, unsigned n, unsigned length,
+                          int coherent);
+void glint_occluded_stream(RTCScene scene, struct RTCRay *rays, unsigned n, unsigned length,
+                           int coherent);
+
 #endif
