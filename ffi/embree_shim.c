@@ -36,6 +36,8 @@ void glint_filter_geometry(RTCGeometry geometry) {
   rtcSetGeometryOccludedFilterFunction(geometry, filter);
 }
 
+int glint_embree_major(void) { return GLINT_EMBREE_MAJOR; }
+
 /* Which lanes of a packet hold rays: all, but in the last one. */
 static const int all[16] __attribute__((aligned(64))) = {-1, -1, -1, -1, -1, -1, -1, -1,
                                                          -1, -1, -1, -1, -1, -1, -1, -1};
@@ -89,8 +91,6 @@ EXPAND(glint_closest_16, struct RTCRayHit16, CLOSEST, rtcIntersect16, 16)
 EXPAND(glint_occluded_8, struct RTCRay8, OCCLUDED, rtcOccluded8, 8)
 EXPAND(glint_occluded_16, struct RTCRay16, OCCLUDED, rtcOccluded16, 16)
 
-int glint_has_streams(void) { return 0; }
-
 void glint_closest_stream(RTCScene scene, struct RTCRayHit *rays, unsigned n, unsigned length,
                           int coherent) {
   (void)length, (void)coherent;
@@ -139,8 +139,6 @@ PACKETS(glint_closest_8, struct RTCRayHit8, rtcIntersect8, 8)
 PACKETS(glint_closest_16, struct RTCRayHit16, rtcIntersect16, 16)
 PACKETS(glint_occluded_8, struct RTCRay8, rtcOccluded8, 8)
 PACKETS(glint_occluded_16, struct RTCRay16, rtcOccluded16, 16)
-
-int glint_has_streams(void) { return 1; }
 
 void glint_closest_stream(RTCScene scene, struct RTCRayHit *rays, unsigned n, unsigned length,
                           int coherent) {

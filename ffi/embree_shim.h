@@ -11,7 +11,8 @@
 #error "GLINT_EMBREE_MAJOR must be 3 or 4"
 #endif
 
-enum { GLINT_EMBREE_VERSION = GLINT_EMBREE_MAJOR };
+/* 3 or 4. */
+int glint_embree_major(void);
 
 /* Answers whether the candidate counts. `user` is what the query was given; `ray` is RTCRay.id;
  * `t` is Embree's own distance. Must not unwind. */
@@ -36,10 +37,7 @@ void glint_closest_16(RTCScene scene, struct RTCRayHit16 *packets, unsigned n, i
 void glint_occluded_8(RTCScene scene, struct RTCRay8 *packets, unsigned n, int coherent);
 void glint_occluded_16(RTCScene scene, struct RTCRay16 *packets, unsigned n, int coherent);
 
-/* Whether this Embree has calls for streams: 3 has, 4 has not, and traces them ray by ray here. */
-int glint_has_streams(void);
-
-/* Streams of `length` rays, the last one shorter. */
+/* Streams of `length` rays, the last one shorter. Embree 4 has none, and traces ray by ray here. */
 void glint_closest_stream(RTCScene scene, struct RTCRayHit *rays, unsigned n, unsigned length,
                           int coherent);
 void glint_occluded_stream(RTCScene scene, struct RTCRay *rays, unsigned n, unsigned length,

@@ -20,7 +20,7 @@ pub struct BareEmbree {
     // Dropped in this order: the scene before its device, both before the buffers.
     scene: EmbreeScene,
     _device: Device,
-    _geometry: Arc<Geometry>,
+    geometry: Arc<Geometry>,
     stats: BuildStats,
 }
 
@@ -39,7 +39,7 @@ impl BareEmbree {
         let device = Device::new(threads, isa)?;
         let scene = EmbreeScene::build(&device, &geometry, variant, false)?;
         let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: device.bytes() };
-        Ok(Self { scene, _device: device, _geometry: geometry, stats })
+        Ok(Self { scene, _device: device, geometry, stats })
     }
 
     /// What building it took.
@@ -56,12 +56,15 @@ impl BareEmbree {
         })
     }
 
-    /// Rays for which any hit is looked for by `call`.
-    pub fn occluded(&self, call: EmbreeCall) -> BareRays<'_> {
-        BareRays(match call {
-            EmbreeCall::Single | EmbreeCall::Stream(..) => self.loaded::<sys::RTCRay>(call),
-            EmbreeCall::Packet8(_) => self.loaded::<sys::RTCRay8>(call),
-            EmbreeCall::Packet16(_) => self.loaded::<sys::RTCRay16>(call),
+    /// Rays for which any hit is looked for by `call`; none where this Embree would not return from it.
+    pub fn occluded(&self, call: EmbreeCall) -> Option<BareRays<'_>> {
+        let returns = self.geometry.instances.is_empty() || call.returns_on_instances();
+        returns.then(|| {
+            BareRays(match call {
+                EmbreeCall::Single | EmbreeCall::Stream(..) => self.loaded::<sys::RTCRay>(call),
+                EmbreeCall::Packet8(_) => self.loaded::<sys::RTCRay8>(call),
+                EmbreeCall::Packet16(_) => self.loaded::<sys::RTCRay16>(call),
+            })
         })
     }
 

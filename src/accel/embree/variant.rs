@@ -65,9 +65,7 @@ pub enum EmbreeCall {
 impl EmbreeCall {
     /// Every call for several rays that the linked Embree has; streams in three lengths.
     pub fn for_several() -> Vec<Self> {
-        // SAFETY: takes nothing and returns a constant.
-        let has_streams = unsafe { sys::glint_has_streams() } != 0;
-        let lengths: &[u32] = if has_streams { &[64, 256, 1024] } else { &[] };
+        let lengths: &[u32] = if major() == 3 { &[64, 256, 1024] } else { &[] };
         [Hint::Incoherent, Hint::Coherent]
             .into_iter()
             .flat_map(|hint| {
@@ -75,6 +73,14 @@ impl EmbreeCall {
                 [Self::Packet8(hint), Self::Packet16(hint)].into_iter().chain(streams)
             })
             .collect()
+    }
+
+    /// Whether an any-hit query on a scene with instances returns. Embree 3.13.5 with AVX-512 loops for ever in
+    /// packets of 16 with the coherent hint, of which its coherent streams are made, too.
+    pub(super) fn returns_on_instances(self) -> bool {
+        let hangs =
+            matches!(self, Self::Packet16(Hint::Coherent) | Self::Stream(_, Hint::Coherent));
+        major() != 3 || !hangs
     }
 
     /// Embree's hint as C has it.
@@ -100,4 +106,10 @@ impl EmbreeCall {
             Hint::Coherent => format!("{rays}, coherent"),
         }
     }
+}
+
+/// Which Embree is linked: 3 or 4.
+fn major() -> c_int {
+    // SAFETY: takes nothing and returns a constant.
+    unsafe { sys::glint_embree_major() }
 }

@@ -35,6 +35,7 @@ pub fn contest(
         let times = field.heats(&event);
         let mut racing: Vec<_> = (0..contestants.len()).collect();
         let qualified = |i: usize| times.iter().any(|t| t.contestant == i && t.qualified);
+        racing.retain(|&i| field.takes_part(i, set.kind));
         racing.retain(|&i| contestants[i].role != Role::Heat || qualified(i));
         heats.extend(
             times.iter().map(|time| heat(name, &contestants[time.contestant], &event, time)),

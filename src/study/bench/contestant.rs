@@ -55,8 +55,8 @@ impl Law {
 
 /// Makes room for rays in a layout of its own.
 pub trait Tracer: Sync {
-    /// Room for rays to be asked `query`, empty.
-    fn batch(&self, query: Query) -> Box<dyn Batch + '_>;
+    /// Room for rays to be asked `query`, empty; none from who cannot answer that.
+    fn batch(&self, query: Query) -> Option<Box<dyn Batch + '_>>;
 }
 
 /// Some rays in a layout of their tracer's own. Only [`Batch::trace`] is timed.

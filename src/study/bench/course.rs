@@ -35,14 +35,14 @@ impl<'a> Course<'a> {
         let warm_ups = warm_up.len().div_ceil(BATCH);
         let all = warm_ups + rays.len().div_ceil(BATCH);
         let rooms = self.rooms(query);
-        while rooms.len() < all {
-            rooms.push(Mutex::new(contestant.tracer.batch(query)));
-        }
+        // Who cannot answer has no room, and is asked nothing.
+        let new = (rooms.len()..all).map_while(|_| contestant.tracer.batch(query));
+        rooms.extend(new.map(Mutex::new));
         let pieces = warm_up.chunks(BATCH).chain(rays.chunks(BATCH));
         for (room, rays) in rooms.iter_mut().zip(pieces) {
             batch_in(room).load(rays);
         }
-        let (warm_up, timed) = rooms[..all].split_at(warm_ups);
+        let (warm_up, timed) = rooms[..all.min(rooms.len())].split_at(warm_ups.min(rooms.len()));
         trace(warm_up, threads);
         trace(timed, threads)
     }

@@ -64,11 +64,11 @@ struct Called<'a> {
 }
 
 impl Tracer for Called<'_> {
-    fn batch(&self, query: Query) -> Box<dyn Batch + '_> {
-        Box::new(match query {
+    fn batch(&self, query: Query) -> Option<Box<dyn Batch + '_>> {
+        Some(Box::new(match query {
             Query::Closest => self.embree.closest(self.call),
-            Query::AnyHit => self.embree.occluded(self.call),
-        })
+            Query::AnyHit => self.embree.occluded(self.call)?,
+        }))
     }
 }
 

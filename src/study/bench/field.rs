@@ -4,7 +4,7 @@ use super::agreement::{Agreement, compare};
 use super::contestant::{Answer, Contestant, Role};
 use super::course::{BATCH, Course};
 use super::crew::Lap;
-use super::rays::{Query, RaySet};
+use super::rays::{Query, RayKind, RaySet};
 use crate::accel::resolve_all;
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use crate::sampling::hash::combine;
@@ -75,6 +75,11 @@ impl<'a> Field<'a> {
         }
     }
 
+    /// Whether a contestant answers what is asked about rays of this kind.
+    pub(super) fn takes_part(&self, contestant: usize, kind: RayKind) -> bool {
+        self.contestants[contestant].tracer.batch(kind.query()).is_some()
+    }
+
     /// Rays with the answers of the baseline, or of the first contestant where there is none.
     pub(super) fn event(&mut self, set: &'a RaySet) -> Event<'a> {
         let baseline = self.contestants.iter().position(|c| c.role == Role::Baseline).unwrap_or(0);
@@ -141,11 +146,12 @@ impl<'a> Field<'a> {
     ) -> Agreement {
         let tracer = &self.contestants[contestant].tracer;
         let witness = |ray: &Ray| {
-            let mut batch = tracer.batch(Query::Closest);
-            batch.load(std::slice::from_ref(ray));
-            batch.trace();
             let mut answers = Vec::new();
-            batch.read(&mut answers);
+            if let Some(mut batch) = tracer.batch(Query::Closest) {
+                batch.load(std::slice::from_ref(ray));
+                batch.trace();
+                batch.read(&mut answers);
+            }
             answers.first().map_or(PrimitiveId::MISS, |answer| answer.id)
         };
         self.contestants[contestant].isa.limit();
@@ -164,7 +170,9 @@ impl<'a> Field<'a> {
         let rays = parts.clone().map(|part| &event.set.rays[part]).concat();
         let reference = parts.map(|part| &event.reference[part]).concat();
 
-        let must = |i: &usize| self.contestants[*i].role == Role::Heat;
+        let must = |i: &usize| {
+            self.contestants[*i].role == Role::Heat && self.takes_part(*i, event.set.kind)
+        };
         let entrants: Vec<_> = (0..self.contestants.len()).filter(must).collect();
         let mut best = vec![f64::INFINITY; entrants.len()];
         for _ in 0..HEATS {

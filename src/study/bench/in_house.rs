@@ -18,12 +18,12 @@ pub struct InHouse<'a, A> {
 }
 
 impl<A: Accelerator> Tracer for InHouse<'_, A> {
-    fn batch(&self, query: Query) -> Box<dyn Batch + '_> {
+    fn batch(&self, query: Query) -> Option<Box<dyn Batch + '_>> {
         let (accelerator, slice, rays) = (self.accelerator, self.slice, Vec::new());
-        match query {
+        Some(match query {
             Query::Closest => Box::new(Closest { accelerator, slice, rays, hits: Vec::new() }),
             Query::AnyHit => Box::new(AnyHit { accelerator, slice, rays, blocked: Vec::new() }),
-        }
+        })
     }
 }
 
