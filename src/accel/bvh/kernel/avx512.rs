@@ -3,11 +3,11 @@
 //! Source of the networks: K. Batcher, "Sorting Networks and their Applications", AFIPS 1968, with each merge's first
 //! step against the reversed other half.
 
-use super::{Inside, Kernel, Task};
+use super::{Inside, Kernel, Task, sse};
 use crate::accel::bvh::block::Block;
 use crate::accel::bvh::node::{LEAF_UNITS, NODE_UNITS, Node, WIDTH};
 use crate::accel::bvh::slot::Slot;
-use crate::accel::bvh::woop::{Shear, TRUSTED};
+use crate::accel::bvh::woop::Shear;
 use bytemuck::Pod;
 #[allow(clippy::wildcard_imports, reason = "the names say where they are from")]
 use std::arch::x86_64::*;
@@ -53,8 +53,7 @@ impl Kernel for Avx512 {
 
     #[inline(always)]
     fn inside(self, shear: &Shear, block: &Block) -> Inside {
-        // SAFETY: as above.
-        unsafe { inside(shear, block) }
+        sse::inside(shear, block)
     }
 }
 
@@ -135,48 +134,6 @@ struct Grid {
     step: [f32; 4],
     near_base: [f32; 4],
     far_base: [f32; 4],
-}
-
-/// See [`Kernel::inside`].
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,popcnt")]
-#[inline]
-fn inside(shear: &Shear, block: &Block) -> Inside {
-    let [x, y, z] = shear.axes.map(|axis| axis.min(2) as usize);
-    let [ox, oy, oz] = shear.origin.map(|o| _mm_set1_ps(o));
-    let [sx, sy] = shear.shear.map(|s| _mm_set1_ps(s));
-    // Without fused operations: the same bits as in every other kernel.
-    macro_rules! project {
-        ($corner:literal) => {{
-            let corner = &block.corners[$corner];
-            let depth = _mm_sub_ps(load4(&corner[z]), oz);
-            let flat_x = _mm_sub_ps(load4(&corner[x]), ox);
-            let flat_y = _mm_sub_ps(load4(&corner[y]), oy);
-            (_mm_sub_ps(flat_x, _mm_mul_ps(sx, depth)), _mm_sub_ps(flat_y, _mm_mul_ps(sy, depth)))
-        }};
-    }
-    let (ax, ay) = project!(0);
-    let (bx, by) = project!(1);
-    let (cx, cy) = project!(2);
-    let u = _mm_sub_ps(_mm_mul_ps(cx, by), _mm_mul_ps(cy, bx));
-    let v = _mm_sub_ps(_mm_mul_ps(ax, cy), _mm_mul_ps(ay, cx));
-    let w = _mm_sub_ps(_mm_mul_ps(bx, ay), _mm_mul_ps(by, ax));
-    // The signs of all three; what is not a number has none, and is not trusted either.
-    let zero = _mm_setzero_ps();
-    let negative = _mm_cmp_ps_mask::<_CMP_LT_OQ>(u, zero)
-        | _mm_cmp_ps_mask::<_CMP_LT_OQ>(v, zero)
-        | _mm_cmp_ps_mask::<_CMP_LT_OQ>(w, zero);
-    let positive = _mm_cmp_ps_mask::<_CMP_GT_OQ>(u, zero)
-        | _mm_cmp_ps_mask::<_CMP_GT_OQ>(v, zero)
-        | _mm_cmp_ps_mask::<_CMP_GT_OQ>(w, zero);
-    let inside = u32::from(!(negative & positive) & 15);
-    if inside == 0 {
-        return Inside { inside: 0, unsure: 0 };
-    }
-    let size = |e| _mm_andnot_ps(_mm_set1_ps(-0.0), e);
-    let sum = _mm_add_ps(_mm_add_ps(size(u), size(v)), size(w));
-    let sure = _mm_cmp_ps_mask::<_CMP_GE_OQ>(sum, _mm_set1_ps(*TRUSTED.start()))
-        & _mm_cmp_ps_mask::<_CMP_LE_OQ>(sum, _mm_set1_ps(*TRUSTED.end()));
-    Inside { inside, unsure: inside & !u32::from(sure) }
 }
 
 /// Largest first.

@@ -5,11 +5,17 @@
 //! within the margins of `ray`, which hit is found does not.
 
 #[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
 mod avx512;
 mod plain;
+#[cfg(target_arch = "x86_64")]
+mod sse;
 #[cfg(test)]
 mod tests;
 
+#[cfg(target_arch = "x86_64")]
+use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 use avx512::Avx512;
 use plain::Plain;
@@ -31,20 +37,16 @@ pub(super) trait Task {
 pub(super) fn dispatch<T: Task>(task: T) {
     let isa = Isa::current();
     #[cfg(target_arch = "x86_64")]
-    if let (Isa::Avx512, Some(kernel)) = (isa, Avx512::detect()) {
-        return kernel.run(task);
+    {
+        if let (Isa::Avx512, Some(kernel)) = (isa, Avx512::detect()) {
+            return kernel.run(task);
+        }
+        if let (Isa::Avx512 | Isa::Avx2, Some(kernel)) = (isa, Avx2::detect()) {
+            return kernel.run(task);
+        }
     }
-    isa.run(PlainTask(task));
-}
-
-/// A task in plain loops, compiled for each instruction set.
-struct PlainTask<T>(T);
-
-impl<T: Task> crate::os::Kernel for PlainTask<T> {
-    #[inline(always)]
-    fn run(self) {
-        self.0.run(Plain);
-    }
+    let _ = isa;
+    task.run(Plain);
 }
 
 /// The operations on vectors.

@@ -39,15 +39,21 @@ impl Kernel for Plain {
 
     #[inline(always)]
     fn prune(self, slot: &mut Slot) -> usize {
-        let mut kept = 0;
-        for i in 0..slot.top as usize {
-            let (entry, reference) = (slot.entries[i], slot.references[i]);
-            slot.entries[kept] = entry;
-            slot.references[kept] = reference;
-            kept += usize::from(entry <= slot.limit);
-        }
-        kept
+        prune(slot)
     }
+}
+
+/// See [`Kernel::prune`].
+#[inline(always)]
+pub(super) fn prune(slot: &mut Slot) -> usize {
+    let mut kept = 0;
+    for i in 0..slot.top as usize {
+        let (entry, reference) = (slot.entries[i], slot.references[i]);
+        slot.entries[kept] = entry;
+        slot.references[kept] = reference;
+        kept += usize::from(entry <= slot.limit);
+    }
+    kept
 }
 
 /// Where the ray enters each child, and a bit for each child that it meets up to its limit.

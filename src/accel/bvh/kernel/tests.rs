@@ -1,6 +1,8 @@
 //! Every kernel that the machine has, against exact or slow answers, and all against each other.
 
-use super::{Avx512, Kernel, Plain};
+#[cfg(target_arch = "x86_64")]
+use super::{Avx2, Avx512};
+use super::{Kernel, Plain};
 use crate::accel::bvh::block::{Block, Meshes, SIZE};
 use crate::accel::bvh::node::{Node, WIDTH};
 use crate::accel::bvh::ray::BoxRay;
@@ -19,8 +21,13 @@ trait Check {
 fn every_kernel(mut check: impl Check) {
     check.check(Plain);
     #[cfg(target_arch = "x86_64")]
-    if let Some(kernel) = Avx512::detect() {
-        check.check(kernel);
+    {
+        if let Some(kernel) = Avx2::detect() {
+            check.check(kernel);
+        }
+        if let Some(kernel) = Avx512::detect() {
+            check.check(kernel);
+        }
     }
 }
 
