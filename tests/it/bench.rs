@@ -12,7 +12,7 @@ use glint::math::DVec3;
 use glint::os::Isa;
 use glint::scene::{Camera, Projection};
 use glint::study::bench::{
-    Contestant, Findings, InHouse, Law, Query, RayKind, RaySet, RaySource, Role, Settings, contest,
+    Contestant, Findings, InHouse, Law, RayKind, RaySet, RaySource, Role, Settings, contest,
 };
 use glint::world::World;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -269,6 +269,7 @@ fn rivals_are_compared_in_the_same_repetitions() {
 #[test]
 fn every_call_of_embrees_gives_the_answers_of_single_rays() {
     use glint::accel::embree::{BareEmbree, EmbreeAccelerator, EmbreeCall, EmbreeVariant};
+    use glint::study::bench::Query;
     let world = world(Kind::Foliage, 20_000);
     let embree = EmbreeAccelerator::build(world.geometry.clone(), 1).expect("it builds");
     let sets =

@@ -3,7 +3,7 @@
 //! What is done, in order: every structure is built several times; rays of every kind are made from the
 //! scene; each of Embree's calls for several rays is tried on a sample (the heats), and the best two go on;
 //! every answer of every contestant is compared with those of Embree's robust mode; whoever was right races
-//! ([`race`](self::race)): turns on the same rays in rotating order, medians over repetitions, and
+//! : turns on the same rays in rotating order, medians over repetitions, and
 //! differences inside the noise called ties. Must not print.
 
 mod agreement;
