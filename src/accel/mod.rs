@@ -33,6 +33,9 @@ pub trait Accelerator: Sync {
 ///
 /// Must be a pure function of its arguments: backends ask it in any order and more than once.
 pub trait HitFilter: Sync {
+    /// Whether it refuses anything at all: if not, it need not be asked.
+    const REFUSES: bool = true;
+
     /// Whether the surface is there for this ray.
     fn accept(&self, ray: &Ray, candidate: &Hit) -> bool;
 }
@@ -42,6 +45,8 @@ pub trait HitFilter: Sync {
 pub struct AcceptAll;
 
 impl HitFilter for AcceptAll {
+    const REFUSES: bool = false;
+
     #[inline]
     fn accept(&self, _: &Ray, _: &Hit) -> bool {
         true

@@ -8,7 +8,7 @@
 use super::Bvh;
 use super::block::SIZE;
 use super::kernel::{Distances, Inside, Kernel, Task};
-use super::node::Reference;
+use super::node::{Kind, Reference};
 use super::slot::{self, Found, Slot};
 use crate::accel::{HitFilter, resolve};
 use crate::geometry::{NONE, PrimitiveId, Ray};
@@ -124,9 +124,14 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
                 };
                 self.advance(i, top, &mut waiting);
             }
-            // Test a leaf each.
+            // Test the edges of a leaf each: most are missed, and their rays go on at once.
+            let mut hit = 0;
             for i in bits(waiting.take_leaves()) {
-                let top = self.test(kernel, i);
+                hit |= self.test(kernel, i, &mut waiting);
+            }
+            // Measure the distances of the others.
+            for i in bits(hit) {
+                let top = self.measure(kernel, i);
                 self.advance(i, top, &mut waiting);
             }
             // Enter or leave an object, or end a ray and begin another.
@@ -152,38 +157,63 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
         waiting.push(i, next);
     }
 
-    /// Tests the triangles of a leaf; returns the height of the stack.
+    /// Tests the edges of a leaf's triangles. If the ray is inside of any, returns the slot's bit; otherwise advances.
+    /// Which it is cannot be predicted: without a branch.
     #[inline(always)]
-    fn test<K: Kernel>(&mut self, kernel: K, i: u32) -> usize {
+    fn test<K: Kernel>(&mut self, kernel: K, i: u32, waiting: &mut Waiting) -> u64 {
         let hierarchy = &self.batch.bvh.hierarchy;
         let slot = self.slot(i);
-        let block = hierarchy.block(slot.next);
-        let Inside { inside, unsure } = kernel.inside(&slot.shear, block);
+        slot.inside = kernel.inside(&slot.shear, hierarchy.block(slot.next));
+        let hit = slot.inside.inside != 0;
+        // What follows would be taken off the stack; a leaf that is hit stays, and waits for nothing.
+        let top = slot.top as usize - 1;
+        let follows = Reference(slot.references[top]);
+        slot.top = if hit { slot.top } else { top as u32 };
+        slot.next = if hit { slot.next } else { follows };
+        prefetch(hierarchy.place(follows));
+        waiting.push(i, if hit { Reference::new(Kind::Node, 0) } else { follows });
+        u64::from(hit) << i
+    }
+
+    /// Measures how far the triangles are whose edges the ray is inside; returns the height of the stack.
+    #[inline(always)]
+    fn measure<K: Kernel>(&mut self, kernel: K, i: u32) -> usize {
+        let Batch { bvh, .. } = &self.batch;
+        let bvh = *bvh;
+        let slot = self.slot(i);
+        let Inside { inside, unsure } = slot.inside;
         let top = slot.top as usize;
-        if inside == 0 {
-            return top;
-        }
         let is_better = if slot.instance == NONE && unsure == 0 {
-            let Distances { t, within, edge_on } = kernel.distances(slot, block);
-            match inside & (within | edge_on) {
-                0 => return top,
-                nearer if edge_on & nearer == 0 => self.consider(i, nearer, &t),
-                _ => self.consider_with_care(i, inside, unsure),
+            let Distances { t, within, edge_on } = kernel.distances(slot, bvh.hierarchy.block(slot.next));
+            let nearer = inside & (within | edge_on);
+            let lane = nearer.trailing_zeros() & (SIZE as u32 - 1);
+            let distance = t[lane as usize];
+            // One at most, and not at the same distance as the best.
+            let is_simple = nearer & (nearer.wrapping_sub(1) | edge_on) == 0 && distance != slot.limit;
+            if is_simple && !(F::REFUSES && bvh.has_filters) {
+                let found = Found { leaf: slot.next, lane, instance: NONE };
+                let is_better = nearer != 0;
+                slot.limit = if is_better { distance } else { slot.limit };
+                slot.best = if is_better { found } else { slot.best };
+                is_better
+            } else if edge_on & nearer == 0 {
+                self.consider(i, nearer, &t)
+            } else {
+                self.consider_with_care(i, inside, unsure)
             }
         } else {
             self.consider_with_care(i, inside, unsure)
         };
-        match is_better {
-            false => top,
+        match ANY {
             // Down to the reference that ends it.
-            true if ANY => 1,
-            true => kernel.prune(self.slot(i)),
+            true => if is_better { 1 } else { top },
+            false => kernel.prune(self.slot(i)),
         }
     }
 
     /// Takes those triangles of a leaf, at these distances, that are not beyond the best so far; whether there
     /// were any.
-    #[inline(always)]
+    #[inline(never)]
     fn consider(&mut self, i: u32, mut nearer: u32, distances: &[f32; SIZE]) -> bool {
         let Batch { bvh, rays, filter, .. } = &self.batch;
         let (bvh, rays, filter) = (*bvh, *rays, *filter);
@@ -201,7 +231,7 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
             if t == slot.limit && bvh.id(slot.best) < bvh.id(found) {
                 continue;
             }
-            if bvh.has_filters {
+            if F::REFUSES && bvh.has_filters {
                 let id = bvh.id(found);
                 let ray = &rays[slot.ray as usize];
                 let asked = bvh.geometry.mesh(id).filtered;

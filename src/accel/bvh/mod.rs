@@ -18,6 +18,7 @@ mod slot;
 mod validate;
 mod woop;
 
+pub use kernel::Steps;
 pub use validate::TreeStatistics;
 
 use super::{Accelerator, BuildStats, HitFilter, resolve_all};
@@ -25,8 +26,10 @@ use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use flight::Batch;
 use hierarchy::Hierarchy;
+use kernel::Count;
 use node::Reference;
 use slot::Found;
+use std::cell::Cell;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -57,6 +60,25 @@ impl Bvh {
         let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: hierarchy.bytes() };
         let has_filters = geometry.has_filtered_meshes();
         Ok(Self { geometry, hierarchy, has_filters, stats })
+    }
+
+    /// What it takes to find the closest hits of `rays`, or if `any`, whether they hit anything.
+    pub fn steps<F: HitFilter>(&self, rays: &[Ray], filter: &F, any: bool) -> Steps {
+        let steps = Cell::new(Steps::default());
+        for rays in rays.chunks(CHUNK) {
+            let (steps, ids) = (&steps, &mut [PrimitiveId::MISS; CHUNK][..rays.len()]);
+            match any {
+                false => {
+                    let task = Batch::<F, false> { bvh: self, rays, filter, ids };
+                    kernel::dispatch(Count { task, steps });
+                }
+                true => {
+                    let task = Batch::<F, true> { bvh: self, rays, filter, ids };
+                    kernel::dispatch(Count { task, steps });
+                }
+            }
+        }
+        steps.get()
     }
 
     /// The id of a triangle in a leaf; a miss of none.

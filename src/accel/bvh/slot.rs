@@ -4,6 +4,7 @@
 
 use super::binned::HALVE_FROM;
 use super::hierarchy::Hierarchy;
+use super::kernel::Inside;
 use super::node::{Reference, WIDTH};
 use super::ray::BoxRay;
 use super::woop::Shear;
@@ -41,11 +42,13 @@ pub(super) struct Slot {
     /// That it is in, or none.
     pub(super) instance: u32,
     pub(super) best: Found,
+    /// Of the triangles of the leaf that is next.
+    pub(super) inside: Inside,
     /// What is left for later, and where the ray enters it: the nearest last.
     pub(super) references: [u32; ROOM],
     pub(super) entries: [f32; ROOM],
     /// An odd number of cache lines from slot to slot: they do not fall on the same places of the cache.
-    unused: [u32; 8],
+    unused: [u32; 6],
 }
 
 /// A triangle that the ray hits, or none.

@@ -1,6 +1,6 @@
 //! Sixteen children as twice eight in AVX2, which has no compression: a table of permutations serves.
 
-use super::{Inside, Kernel, Task, plain, sse};
+use super::{Distances, Inside, Kernel, Task, avx, plain, sse};
 use crate::accel::bvh::block::Block;
 use crate::accel::bvh::node::{LEAF_UNITS, NODE_UNITS, Node, WIDTH};
 use crate::accel::bvh::slot::{SPARE, Slot};
@@ -48,6 +48,12 @@ impl Kernel for Avx2 {
     #[inline(always)]
     fn inside(self, shear: &Shear, block: &Block) -> Inside {
         sse::inside(shear, block)
+    }
+
+    #[inline(always)]
+    fn distances(self, slot: &Slot, block: &Block) -> Distances {
+        // SAFETY: as above.
+        unsafe { avx::distances(slot, block) }
     }
 }
 

@@ -3,7 +3,7 @@
 //! Source of the networks: K. Batcher, "Sorting Networks and their Applications", AFIPS 1968, with each merge's first
 //! step against the reversed other half.
 
-use super::{Inside, Kernel, Task, sse};
+use super::{Distances, Inside, Kernel, Task, avx, sse};
 use crate::accel::bvh::block::Block;
 use crate::accel::bvh::node::{LEAF_UNITS, NODE_UNITS, Node, WIDTH};
 use crate::accel::bvh::slot::Slot;
@@ -54,6 +54,12 @@ impl Kernel for Avx512 {
     #[inline(always)]
     fn inside(self, shear: &Shear, block: &Block) -> Inside {
         sse::inside(shear, block)
+    }
+
+    #[inline(always)]
+    fn distances(self, slot: &Slot, block: &Block) -> Distances {
+        // SAFETY: as above.
+        unsafe { avx::distances(slot, block) }
     }
 }
 

@@ -5,9 +5,12 @@
 //! within the margins of `ray`, which hit is found does not.
 
 #[cfg(target_arch = "x86_64")]
+mod avx;
+#[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod counting;
 mod plain;
 #[cfg(target_arch = "x86_64")]
 mod sse;
@@ -20,11 +23,15 @@ use avx2::Avx2;
 use avx512::Avx512;
 use plain::Plain;
 
+pub(super) use counting::Count;
+pub use counting::Steps;
+
 use super::block::{Block, SIZE};
 use super::node::Node;
 use super::slot::Slot;
 use super::woop::Shear;
 use crate::os::Isa;
+use bytemuck::Zeroable;
 
 /// Work to be done with some kernel.
 pub(super) trait Task {
@@ -73,7 +80,8 @@ pub(super) trait Kernel: Copy {
 }
 
 /// Triangles of a block, a bit for each lane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Zeroable)]
+#[repr(C)]
 pub(super) struct Inside {
     /// Whether the ray's line meets it, edges included.
     pub(super) inside: u32,

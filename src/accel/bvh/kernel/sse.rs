@@ -21,7 +21,7 @@ fn inside_sse2(shear: &Shear, block: &Block) -> Inside {
     // Corners relative to the origin, sheared.
     macro_rules! project {
         ($corner:literal) => {{
-            let along = |axis| load4(shear.along(&block.corners[$corner], axis));
+            let along = |axis: usize| load4(along(shear, &block.corners[$corner], axis));
             let depth = _mm_sub_ps(along(2), oz);
             let (x, y) = (_mm_sub_ps(along(0), ox), _mm_sub_ps(along(1), oy));
             (_mm_sub_ps(x, _mm_mul_ps(sx, depth)), _mm_sub_ps(y, _mm_mul_ps(sy, depth)))
@@ -57,4 +57,13 @@ fn inside_sse2(shear: &Shear, block: &Block) -> Inside {
 fn load4(values: &[f32; SIZE]) -> __m128 {
     // SAFETY: reads the four values.
     unsafe { _mm_loadu_ps(values.as_ptr()) }
+}
+
+/// The corners along axis `i` of the shear.
+#[inline(always)]
+fn along<'a>(shear: &Shear, corner: &'a [[f32; SIZE]; 3], i: usize) -> &'a [f32; SIZE] {
+    let axis = shear.axes[i];
+    debug_assert!(axis < 3);
+    // SAFETY: axes are 0, 1, 2 in some order: `Shear::new` makes no others, and without one they are zero.
+    unsafe { corner.get_unchecked(axis as usize) }
 }
