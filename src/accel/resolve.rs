@@ -19,7 +19,6 @@ pub fn resolve(geometry: &Geometry, ray: &Ray, id: PrimitiveId) -> Hit {
 
 /// [`resolve`] for each ray with its id; misses stay misses.
 pub fn resolve_all(geometry: &Geometry, rays: &[Ray], ids: &[PrimitiveId], hits: &mut [Hit]) {
-    let isa = Isa::current();
     let mut lanes = Lanes::new();
     for ((rays, ids), hits) in rays.chunks(LANES).zip(ids.chunks(LANES)).zip(hits.chunks_mut(LANES))
     {
@@ -38,7 +37,7 @@ pub fn resolve_all(geometry: &Geometry, rays: &[Ray], ids: &[PrimitiveId], hits:
         for (lane, &place) in places[..count].iter().enumerate() {
             lanes.set(lane, &rays[place], geometry.world_vertices(ids[place]));
         }
-        isa.run(ResolveKernel { lanes: &mut lanes });
+        lanes.resolve();
         for (lane, &place) in places[..count].iter().enumerate() {
             hits[place] = lanes.hit(lane, ids[place]);
         }
@@ -46,10 +45,10 @@ pub fn resolve_all(geometry: &Geometry, rays: &[Ray], ids: &[PrimitiveId], hits:
 }
 
 /// Hits that are resolved together.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
 /// Rays, vertices and results, as one array a number.
-struct Lanes {
+pub(super) struct Lanes {
     origin: [[f32; LANES]; 3],
     direction: [[f32; LANES]; 3],
     t_min: [f32; LANES],
@@ -62,7 +61,7 @@ struct Lanes {
 }
 
 impl Lanes {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             origin: [[0.0; LANES]; 3],
             direction: [[0.0; LANES]; 3],
@@ -75,8 +74,9 @@ impl Lanes {
         }
     }
 
+    /// Puts a ray and a triangle in a lane.
     #[inline(always)]
-    fn set(&mut self, i: usize, ray: &Ray, (vertices, magnitude): ([DVec3; 3], f32)) {
+    pub(super) fn set(&mut self, i: usize, ray: &Ray, (vertices, magnitude): ([DVec3; 3], f32)) {
         for k in 0..3 {
             self.origin[k][i] = ray.origin[k];
             self.direction[k][i] = ray.direction[k];
@@ -88,8 +88,15 @@ impl Lanes {
         self.instance_magnitude[i] = magnitude;
     }
 
+    /// Intersects the rays and triangles of all lanes.
+    #[inline]
+    pub(super) fn resolve(&mut self) {
+        Isa::current().run(ResolveKernel { lanes: self });
+    }
+
+    /// The hit in a lane.
     #[inline(always)]
-    fn hit(&self, i: usize, id: PrimitiveId) -> Hit {
+    pub(super) fn hit(&self, i: usize, id: PrimitiveId) -> Hit {
         // One by one: `map` would move the whole arrays.
         let [t, u, v, offset] = &self.numbers;
         let (t, u, v, offset) = (t[i], u[i], v[i], offset[i]);

@@ -104,11 +104,16 @@ impl Geometry {
     /// units) by whose `f32` round-off a backend may have misplaced it, beyond the corners' own.
     #[inline(always)]
     pub fn world_vertices(&self, id: PrimitiveId) -> ([DVec3; 3], f32) {
-        let local = self.mesh(id).vertices(id.primitive);
-        if id.instance == NONE {
+        self.placed_vertices(self.mesh(id).vertices(id.primitive), id.instance)
+    }
+
+    /// [`Self::world_vertices`] of a triangle with these corners in its mesh, in an instance or in [`NONE`].
+    #[inline]
+    pub fn placed_vertices(&self, local: [Vec3; 3], instance: u32) -> ([DVec3; 3], f32) {
+        if instance == NONE {
             return (local.map(Vec3::as_dvec3), 0.0);
         }
-        let instance = &self.instances[id.instance as usize];
+        let instance = &self.instances[instance as usize];
         let world = local.map(|p| instance.world_from_object.transform_point_f64(p));
         let largest = world.iter().fold(0.0_f64, |m, p| m.max(p.abs().max_element())) as f32;
         (world, instance.condition * (largest + instance.translation_magnitude))

@@ -36,6 +36,12 @@ impl Block {
         }
         block
     }
+
+    /// The corners of the triangle in that lane.
+    #[inline(always)]
+    pub(super) fn vertices(&self, lane: usize) -> [Vec3; 3] {
+        self.corners.each_ref().map(|corner| Vec3::from(corner.each_ref().map(|axis| axis[lane])))
+    }
 }
 
 /// The triangles of some meshes, numbered through.

@@ -6,24 +6,25 @@
 //! what flies beside it. Knows how steps follow each other; what they compute is in `kernel`.
 
 use super::Bvh;
+use super::answers::Answers;
 use super::block::SIZE;
+use super::hierarchy::Hierarchy;
 use super::kernel::{Distances, Inside, Kernel, Task};
 use super::node::{Kind, Reference};
 use super::slot::{self, Found, Slot};
 use crate::accel::{HitFilter, resolve};
-use crate::geometry::{NONE, PrimitiveId, Ray};
+use crate::geometry::{NONE, Ray};
 use std::cell::RefCell;
 
 /// Rays in flight, a power of two up to 64: enough to hide the memory's latency, few enough for the first-level cache.
 const IN_FLIGHT: usize = 32;
 
 /// A batch of queries. `ANY`: the first hit is enough.
-pub(super) struct Batch<'a, F, const ANY: bool> {
+pub(super) struct Batch<'a, F, A, const ANY: bool> {
     pub(super) bvh: &'a Bvh,
     pub(super) rays: &'a [Ray],
     pub(super) filter: &'a F,
-    /// What each ray hits, or a miss; as long as `rays`.
-    pub(super) ids: &'a mut [PrimitiveId],
+    pub(super) answers: &'a mut A,
 }
 
 thread_local! {
@@ -31,7 +32,7 @@ thread_local! {
     static SLOTS: RefCell<Option<slot::Slots>> = const { RefCell::new(None) };
 }
 
-impl<F: HitFilter, const ANY: bool> Task for Batch<'_, F, ANY> {
+impl<F: HitFilter, A: Answers, const ANY: bool> Task for Batch<'_, F, A, ANY> {
     #[inline(always)]
     fn run<K: Kernel>(self, kernel: K) {
         // Taken out, so that a filter that asks the accelerator from inside a query gets its own.
@@ -92,14 +93,14 @@ fn bits(mut mask: u64) -> impl Iterator<Item = u32> {
 }
 
 /// The state of a batch.
-struct Flight<'a, F, const ANY: bool> {
-    batch: Batch<'a, F, ANY>,
+struct Flight<'a, F, A, const ANY: bool> {
+    batch: Batch<'a, F, A, ANY>,
     slots: &'a mut [Slot; IN_FLIGHT],
     /// The first ray that has not begun.
     begun: usize,
 }
 
-impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
+impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
     #[inline(always)]
     fn run<K: Kernel>(mut self, kernel: K) {
         let mut waiting = Waiting::NOTHING;
@@ -109,7 +110,7 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
         for i in bits(flying) {
             let slot = self.slot(i);
             slot.next = Reference::DONE;
-            slot.ray = u32::MAX;
+            (slot.ray, slot.best) = (u32::MAX, Found::NONE);
             waiting.push(i, Reference::DONE);
         }
         while flying != 0 {
@@ -153,7 +154,7 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
     #[inline(always)]
     fn advance(&mut self, i: u32, top: usize, waiting: &mut Waiting) {
         let next = self.slot(i).pop(top);
-        prefetch(self.batch.bvh.hierarchy.place(next));
+        prefetch(&self.batch.bvh.hierarchy, next);
         waiting.push(i, next);
     }
 
@@ -170,7 +171,7 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
         let follows = Reference(slot.references[top]);
         slot.top = if hit { slot.top } else { top as u32 };
         slot.next = if hit { slot.next } else { follows };
-        prefetch(hierarchy.place(follows));
+        prefetch(hierarchy, follows);
         waiting.push(i, if hit { Reference::new(Kind::Node, 0) } else { follows });
         u64::from(hit) << i
     }
@@ -268,14 +269,12 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
     /// What is neither node nor leaf. Returns the height of the stack, or nothing if the slot is no longer needed.
     #[inline(always)]
     fn turn(&mut self, i: u32) -> Option<usize> {
-        let Batch { bvh, rays, ids, .. } = &mut self.batch;
+        let Batch { bvh, rays, answers, .. } = &mut self.batch;
         let (hierarchy, geometry) = (&bvh.hierarchy, &bvh.geometry);
         let slot = &mut self.slots[i as usize & (IN_FLIGHT - 1)];
         match slot.next {
             Reference::DONE => {
-                if let Some(id) = ids.get_mut(slot.ray as usize) {
-                    *id = bvh.id(slot.best);
-                }
+                answers.take(bvh, rays, slot.ray, slot.best);
                 let ray = rays.get(self.begun)?;
                 slot.begin(ray, self.begun as u32, hierarchy);
                 self.begun += 1;
@@ -291,18 +290,21 @@ impl<F: HitFilter, const ANY: bool> Flight<'_, F, ANY> {
     }
 }
 
-/// Asks for the three cache lines that a leaf has; a node has two.
+/// Asks for the two cache lines of a node, or the three of a leaf.
 #[inline(always)]
-fn prefetch(start: *const u8) {
+fn prefetch(hierarchy: &Hierarchy, reference: Reference) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        for line in 0..3 {
-            let address = start.wrapping_add(64 * line).cast::<i8>();
+        let start = hierarchy.place(reference);
+        // A node's second line once more, which costs nothing.
+        let third = 64 + 64 * (reference.kind() & 1);
+        for line in [0, 64, third] {
+            let address = start.wrapping_add(line).cast::<i8>();
             // SAFETY: a prefetch reads nothing, whatever the address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(address) };
         }
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = start;
+    let _ = (hierarchy, reference);
 }

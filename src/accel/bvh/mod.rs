@@ -6,6 +6,7 @@
 //! exact ties go to the smallest id. Knows nothing but `geometry`.
 #![allow(unsafe_code)]
 
+mod answers;
 mod binned;
 mod block;
 mod collapse;
@@ -21,9 +22,10 @@ mod woop;
 pub use kernel::Steps;
 pub use validate::TreeStatistics;
 
-use super::{Accelerator, BuildStats, HitFilter, resolve_all};
+use super::{Accelerator, BuildStats, HitFilter};
 use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
+use answers::{Blocked, Hits, Ignored};
 use flight::Batch;
 use hierarchy::Hierarchy;
 use kernel::Count;
@@ -65,18 +67,11 @@ impl Bvh {
     /// What it takes to find the closest hits of `rays`, or if `any`, whether they hit anything.
     pub fn steps<F: HitFilter>(&self, rays: &[Ray], filter: &F, any: bool) -> Steps {
         let steps = Cell::new(Steps::default());
-        for rays in rays.chunks(CHUNK) {
-            let (steps, ids) = (&steps, &mut [PrimitiveId::MISS; CHUNK][..rays.len()]);
-            match any {
-                false => {
-                    let task = Batch::<F, false> { bvh: self, rays, filter, ids };
-                    kernel::dispatch(Count { task, steps });
-                }
-                true => {
-                    let task = Batch::<F, true> { bvh: self, rays, filter, ids };
-                    kernel::dispatch(Count { task, steps });
-                }
-            }
+        let (bvh, answers, steps) = (self, &mut Ignored, &steps);
+        if any {
+            kernel::dispatch(Count { task: Batch::<_, _, true> { bvh, rays, filter, answers }, steps });
+        } else {
+            kernel::dispatch(Count { task: Batch::<_, _, false> { bvh, rays, filter, answers }, steps });
         }
         steps.get()
     }
@@ -93,28 +88,16 @@ impl Bvh {
     }
 }
 
-/// Rays at a time: what they hit is resolved while it is in the cache.
-const CHUNK: usize = 1024;
-
 impl Accelerator for Bvh {
     fn closest<F: HitFilter>(&self, rays: &[Ray], filter: &F, hits: &mut [Hit]) {
-        let mut ids = [PrimitiveId::MISS; CHUNK];
-        for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
-            let ids = &mut ids[..rays.len()];
-            kernel::dispatch(Batch::<F, false> { bvh: self, rays, filter, ids });
-            resolve_all(&self.geometry, rays, ids, hits);
-        }
+        let answers = &mut Hits::new(hits);
+        kernel::dispatch(Batch::<_, _, false> { bvh: self, rays, filter, answers });
+        answers.finish(self, rays);
     }
 
     fn occluded<F: HitFilter>(&self, rays: &[Ray], filter: &F, blocked: &mut [bool]) {
-        let mut ids = [PrimitiveId::MISS; CHUNK];
-        for (rays, blocked) in rays.chunks(CHUNK).zip(blocked.chunks_mut(CHUNK)) {
-            let ids = &mut ids[..rays.len()];
-            kernel::dispatch(Batch::<F, true> { bvh: self, rays, filter, ids });
-            for (blocked, id) in blocked.iter_mut().zip(ids) {
-                *blocked = *id != PrimitiveId::MISS;
-            }
-        }
+        let answers = &mut Blocked(blocked);
+        kernel::dispatch(Batch::<_, _, true> { bvh: self, rays, filter, answers });
     }
 
     fn build_stats(&self) -> BuildStats {

@@ -63,6 +63,12 @@ pub(super) struct Found {
 impl Found {
     /// Nothing so far.
     pub(super) const NONE: Self = Self { leaf: Reference::NOTHING, lane: 0, instance: NONE };
+
+    /// Whether it is a triangle.
+    #[inline(always)]
+    pub(super) fn is_hit(self) -> bool {
+        self.leaf != Reference::NOTHING
+    }
 }
 
 const _: () = assert!(size_of::<Slot>() / 64 % 2 == 1);

@@ -1,0 +1,83 @@
+//! What becomes of a ray that is done: a hit record, a yes or no.
+//!
+//! Hits are resolved some at a time, soon after they were found: the leaves that hold their corners are still
+//! near, where the buffers of the meshes would be two more misses of the cache, one after the other.
+
+use super::Bvh;
+use super::slot::Found;
+use crate::accel::resolve::{LANES, Lanes};
+use crate::geometry::{Hit, Ray};
+
+/// Takes the answers of a batch.
+pub(super) trait Answers {
+    /// The ray of that place in the batch is done with. Places beyond the batch have found nothing.
+    fn take(&mut self, bvh: &Bvh, rays: &[Ray], place: u32, found: Found);
+}
+
+/// Whether there was a hit.
+pub(super) struct Blocked<'a>(pub(super) &'a mut [bool]);
+
+impl Answers for Blocked<'_> {
+    #[inline(always)]
+    fn take(&mut self, _: &Bvh, _: &[Ray], place: u32, found: Found) {
+        if let Some(blocked) = self.0.get_mut(place as usize) {
+            *blocked = found.is_hit();
+        }
+    }
+}
+
+/// Nothing.
+pub(super) struct Ignored;
+
+impl Answers for Ignored {
+    #[inline(always)]
+    fn take(&mut self, _: &Bvh, _: &[Ray], _: u32, _: Found) {}
+}
+
+/// Hit records.
+pub(super) struct Hits<'a> {
+    hits: &'a mut [Hit],
+    /// What was found, not yet resolved, and for which places of the batch.
+    found: [Found; LANES],
+    places: [u32; LANES],
+    count: usize,
+    lanes: Lanes,
+}
+
+impl<'a> Hits<'a> {
+    /// To go where a batch's hits go.
+    pub(super) fn new(hits: &'a mut [Hit]) -> Self {
+        hits.fill(Hit::MISS);
+        let (found, places) = ([Found::NONE; LANES], [0; LANES]);
+        Self { hits, found, places, count: 0, lanes: Lanes::new() }
+    }
+
+    /// Resolves what there is.
+    #[inline(never)]
+    pub(super) fn finish(&mut self, bvh: &Bvh, rays: &[Ray]) {
+        let found = &self.found[..self.count];
+        for (lane, (found, &place)) in found.iter().zip(&self.places).enumerate() {
+            let corners = bvh.hierarchy.block(found.leaf).vertices(found.lane as usize);
+            let vertices = bvh.geometry.placed_vertices(corners, found.instance);
+            self.lanes.set(lane, &rays[place as usize], vertices);
+        }
+        self.lanes.resolve();
+        for (lane, (found, &place)) in found.iter().zip(&self.places).enumerate() {
+            self.hits[place as usize] = self.lanes.hit(lane, bvh.id(*found));
+        }
+        self.count = 0;
+    }
+}
+
+impl Answers for Hits<'_> {
+    #[inline(always)]
+    fn take(&mut self, bvh: &Bvh, rays: &[Ray], place: u32, found: Found) {
+        // Which rays hit is random: without a branch.
+        let end = self.count % LANES;
+        (self.found[end], self.places[end]) = (found, place);
+        self.count += usize::from(found.is_hit());
+        if self.count == LANES {
+            self.finish(bvh, rays);
+        }
+    }
+}
