@@ -17,7 +17,7 @@ use crate::geometry::{NONE, Ray};
 use std::cell::RefCell;
 
 /// Rays in flight, a power of two up to 64: enough to hide the memory's latency, few enough for the first-level cache.
-const IN_FLIGHT: usize = 32;
+const IN_FLIGHT: usize = 64;
 
 /// A batch of queries. `ANY`: the first hit is enough.
 pub(super) struct Batch<'a, F, A, const ANY: bool> {
