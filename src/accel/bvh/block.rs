@@ -7,7 +7,7 @@ use crate::math::Vec3;
 use bytemuck::{Pod, Zeroable};
 
 /// Triangles a block, and so the most a leaf can have.
-pub(super) const SIZE: usize = 4;
+pub(super) const SIZE: usize = 8;
 
 /// Up to four triangles: three cache lines, wherever it begins.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]

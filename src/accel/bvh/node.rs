@@ -80,7 +80,7 @@ const _: () = assert!(size_of::<Node>() == NODE_UNITS * UNIT);
 /// Units from one node to the next.
 pub(super) const NODE_UNITS: usize = 4;
 /// Units from one leaf to the next.
-pub(super) const LEAF_UNITS: usize = 5;
+pub(super) const LEAF_UNITS: usize = 10;
 
 impl Node {
     /// A node of one to sixteen children with these boxes, of which the first `inner` are nodes. They lie in the arena

@@ -1,6 +1,6 @@
 //! Sixteen children as twice eight in AVX2, which has no compression: a table of permutations serves.
 
-use super::{Distances, Inside, Kernel, Task, avx, plain, sse};
+use super::{Distances, Inside, Kernel, Task, avx, plain};
 use crate::accel::bvh::block::Block;
 use crate::accel::bvh::node::{LEAF_UNITS, NODE_UNITS, Node, WIDTH};
 use crate::accel::bvh::slot::{SPARE, Slot};
@@ -47,7 +47,8 @@ impl Kernel for Avx2 {
 
     #[inline(always)]
     fn inside(self, shear: &Shear, block: &Block) -> Inside {
-        sse::inside(shear, block)
+        // SAFETY: as above.
+        unsafe { avx::inside(shear, block) }
     }
 
     #[inline(always)]

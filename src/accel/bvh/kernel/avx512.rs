@@ -3,8 +3,8 @@
 //! Source of the networks: K. Batcher, "Sorting Networks and their Applications", AFIPS 1968, with each merge's first
 //! step against the reversed other half.
 
-use super::{Distances, Inside, Kernel, Task, avx, sse};
-use crate::accel::bvh::block::Block;
+use super::{Distances, Inside, Kernel, Task, avx};
+use crate::accel::bvh::block::{Block, SIZE};
 use crate::accel::bvh::node::{LEAF_UNITS, NODE_UNITS, Node, WIDTH};
 use crate::accel::bvh::slot::Slot;
 use crate::accel::bvh::woop::Shear;
@@ -53,13 +53,14 @@ impl Kernel for Avx512 {
 
     #[inline(always)]
     fn inside(self, shear: &Shear, block: &Block) -> Inside {
-        sse::inside(shear, block)
+        // SAFETY: as above.
+        unsafe { avx::inside(shear, block) }
     }
 
     #[inline(always)]
     fn distances(self, slot: &Slot, block: &Block) -> Distances {
         // SAFETY: as above.
-        unsafe { avx::distances(slot, block) }
+        unsafe { distances(slot, block) }
     }
 }
 
@@ -133,6 +134,49 @@ fn open<const ORDERED: bool>(slot: &mut Slot, node: &Node) -> usize {
         store16(&mut slot.entries, top, distances);
     }
     top + count
+}
+
+/// See [`Kernel::distances`]: the operations of `plain`, in its order and without fused ones, so the same bits.
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,popcnt")]
+#[inline]
+fn distances(slot: &Slot, block: &Block) -> Distances {
+    let all = |value: f32| _mm512_cvtps_pd(_mm256_set1_ps(value));
+    let corner = |vertex: usize, axis: usize| to_f64(&block.corners[vertex][axis]);
+    let sub = |a, b| _mm512_sub_pd(a, b);
+    let mul = |a, b| _mm512_mul_pd(a, b);
+    let add = |a, b| _mm512_add_pd(a, b);
+    let a = [corner(0, 0), corner(0, 1), corner(0, 2)];
+    let ab = [sub(corner(1, 0), a[0]), sub(corner(1, 1), a[1]), sub(corner(1, 2), a[2])];
+    let ac = [sub(corner(2, 0), a[0]), sub(corner(2, 1), a[1]), sub(corner(2, 2), a[2])];
+    let normal = [
+        sub(mul(ab[1], ac[2]), mul(ac[1], ab[2])),
+        sub(mul(ab[2], ac[0]), mul(ac[2], ab[0])),
+        sub(mul(ab[0], ac[1]), mul(ac[0], ab[1])),
+    ];
+    let dot = |x: __m512d, y: __m512d, z: __m512d| {
+        add(add(mul(x, normal[0]), mul(y, normal[1])), mul(z, normal[2]))
+    };
+    let [dx, dy, dz] = slot.direction.to_array();
+    let minus_det = dot(all(dx), all(dy), all(dz));
+    let [ox, oy, oz] = slot.origin.to_array();
+    let height = dot(sub(all(ox), a[0]), sub(all(oy), a[1]), sub(all(oz), a[2]));
+    // 1 / -x is -(1 / x), to the bit.
+    let t = _mm512_cvtpd_ps(mul(height, _mm512_div_pd(_mm512_set1_pd(-1.0), minus_det)));
+    let beyond = _mm256_cmp_ps_mask::<_CMP_GT_OQ>(t, _mm256_set1_ps(slot.t_min));
+    let within = _mm256_mask_cmp_ps_mask::<_CMP_LE_OQ>(beyond, t, _mm256_set1_ps(slot.limit));
+    // Zeros, infinities and what is not a number.
+    let edge_on = _mm512_fpclass_pd_mask::<0b1001_1111>(minus_det);
+    let mut distances = Distances { t: [0.0; SIZE], within: within.into(), edge_on: edge_on.into() };
+    // SAFETY: writes eight values where there are eight.
+    unsafe { _mm256_storeu_ps(distances.t.as_mut_ptr(), t) };
+    distances
+}
+
+#[target_feature(enable = "avx512f")]
+#[inline]
+fn to_f64(values: &[f32; SIZE]) -> __m512d {
+    // SAFETY: reads the eight values.
+    _mm512_cvtps_pd(unsafe { _mm256_loadu_ps(values.as_ptr()) })
 }
 
 /// A node's grid in a ray's parameter: a plane is at base + number * step. The fourth elements mean nothing.

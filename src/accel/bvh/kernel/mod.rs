@@ -12,8 +12,6 @@ mod avx2;
 mod avx512;
 mod counting;
 mod plain;
-#[cfg(target_arch = "x86_64")]
-mod sse;
 #[cfg(test)]
 mod tests;
 
