@@ -10,7 +10,7 @@ mod rgb;
 
 pub use affine::Affine;
 pub use frame::Frame;
-pub use glam::{DAffine3, DMat3, DVec2, DVec3, Vec2, Vec3};
+pub use glam::{DAffine3, DMat3, DVec2, DVec3, Vec2, Vec3, Vec4};
 pub use rgb::Rgb;
 
 /// Half of the distance from 1 to the next larger `f32`: the unit round-off.

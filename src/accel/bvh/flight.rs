@@ -108,9 +108,7 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
         let count = IN_FLIGHT.min(self.batch.rays.len());
         let mut flying = u64::MAX >> (64 - count.max(1));
         for i in bits(flying) {
-            let slot = self.slot(i);
-            slot.next = Reference::DONE;
-            (slot.ray, slot.best) = (u32::MAX, Found::NONE);
+            self.slot(i).reset();
             waiting.push(i, Reference::DONE);
         }
         while flying != 0 {

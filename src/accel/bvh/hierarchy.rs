@@ -28,6 +28,8 @@ pub(super) struct Hierarchy {
     pub(super) objects: Vec<Tree>,
     /// Over the instances.
     pub(super) instances: Tree,
+    /// Largest coordinate of both that stand in the world.
+    pub(super) world_size: f32,
     /// Instances in the order of the leaves.
     order: Vec<u32>,
     /// For each instance.
@@ -91,6 +93,7 @@ impl Hierarchy {
             all.objects.push(tree);
         }
         all.add_instances(geometry)?;
+        all.world_size = all.own.size.max(all.instances.size);
         all.units.truncate(all.used);
         Ok(all)
     }

@@ -6,7 +6,7 @@
 //! u, and the edge test displaces a corner by at most 8u (p + o) (see `woop`). Planes are moved by 16u (p + o).
 
 use super::node::WIDTH;
-use crate::math::{UNIT_ROUNDOFF, Vec3};
+use crate::math::{UNIT_ROUNDOFF, Vec4};
 use bytemuck::{Pod, Zeroable};
 
 /// What boxes need. The fourth elements mean nothing.
@@ -23,23 +23,25 @@ pub(super) struct BoxRay {
 }
 
 impl BoxRay {
-    /// For a tree whose largest coordinate is `size`.
+    /// For a tree whose largest coordinate is `size`. Of origin and direction the fourth elements mean nothing.
     #[inline(always)]
-    pub(super) fn new(origin: Vec3, direction: Vec3, size: f32) -> Self {
+    pub(super) fn new(origin: Vec4, direction: Vec4, size: f32) -> Self {
         // Finite even along an axis: the products must not be 0 times infinity.
-        const SMALLEST: f32 = 1e-18;
-        let (o, d) = (origin.extend(0.0).to_array(), direction.extend(1.0).to_array());
-        let margin = 16.0 * UNIT_ROUNDOFF * (origin.abs().max_element() + size);
-        let mut ray = Self::zeroed();
-        for i in 0..4 {
-            let finite = if d[i].abs() < SMALLEST { SMALLEST.copysign(d[i]) } else { d[i] };
-            let reciprocal = 1.0 / finite;
-            let (offset, margin) = (o[i] * reciprocal, margin * reciprocal.abs());
-            ray.reciprocal[i] = reciprocal;
-            ray.near_offset[i] = offset + margin;
-            ray.far_offset[i] = offset - margin;
-            ray.near[i] = if reciprocal < 0.0 { WIDTH as u32 } else { 0 };
+        const SMALLEST: Vec4 = Vec4::splat(1e-18);
+        let is_small = direction.abs().cmplt(SMALLEST);
+        let finite = Vec4::select(is_small, SMALLEST.copysign(direction), direction);
+        let reciprocal = Vec4::ONE / finite;
+        let largest = origin.with_w(0.0).abs().max_element() + size;
+        let margin = reciprocal.abs() * (16.0 * UNIT_ROUNDOFF * largest);
+        let offset = origin * reciprocal;
+        const { assert!(WIDTH == 16) };
+        // The sign of the reciprocal times the width.
+        let near = reciprocal.to_array().map(|r| r.to_bits() >> 27 & WIDTH as u32);
+        Self {
+            reciprocal: reciprocal.to_array(),
+            near_offset: (offset + margin).to_array(),
+            far_offset: (offset - margin).to_array(),
+            near,
         }
-        ray
     }
 }

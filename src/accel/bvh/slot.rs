@@ -9,7 +9,7 @@ use super::node::{Reference, WIDTH};
 use super::ray::BoxRay;
 use super::woop::Shear;
 use crate::geometry::{Geometry, NONE, Ray};
-use crate::math::Vec3;
+use crate::math::{Vec3, Vec4};
 use crate::os::Arena;
 use bytemuck::Zeroable;
 
@@ -34,9 +34,9 @@ pub(super) struct Slot {
     /// Elements on its stack.
     pub(super) top: u32,
     pub(super) shear: Shear,
-    /// In the world.
-    pub(super) origin: Vec3,
-    pub(super) direction: Vec3,
+    /// In the space in which it is; the fourth elements are 0.
+    pub(super) origin: [f32; 4],
+    pub(super) direction: [f32; 4],
     /// Place in the batch.
     pub(super) ray: u32,
     /// That it is in, or none.
@@ -48,7 +48,7 @@ pub(super) struct Slot {
     pub(super) references: [u32; ROOM],
     pub(super) entries: [f32; ROOM],
     /// An odd number of cache lines from slot to slot: they do not fall on the same places of the cache.
-    unused: [u32; 6],
+    unused: [u32; 4],
 }
 
 /// A triangle that the ray hits, or none.
@@ -102,21 +102,31 @@ impl Slot {
         self.top += 1;
     }
 
-    /// Begins with a ray, of that place in its batch.
+    /// Before any ray: done.
+    pub(super) fn reset(&mut self) {
+        (self.ray, self.best) = (u32::MAX, Found::NONE);
+        self.next = Reference::DONE;
+        self.top = 0;
+        // At the bottom for good.
+        self.push(Reference::DONE);
+    }
+
+    /// Begins with a ray, of that place in its batch; what it does first.
     #[inline(always)]
     pub(super) fn begin(&mut self, ray: &Ray, place: u32, hierarchy: &Hierarchy) {
         self.ray = place;
         self.best = Found::NONE;
         // Not -0, whose bits do not sort as a distance.
         self.t_min = ray.t_min + 0.0;
-        // A hit at t_max does not count, one at the best so far does.
-        self.limit = ray.t_max.next_down();
-        (self.origin, self.direction) = (ray.origin, ray.direction);
+        // A hit at t_max does not count, one at the best so far does: the float before it, for a positive one.
+        let before = f32::from_bits(ray.t_max.to_bits().wrapping_sub(1));
+        self.limit = if ray.t_max > 0.0 { before } else { f32::NEG_INFINITY };
         self.in_world(ray, hierarchy);
-        self.top = 0;
-        self.push(Reference::DONE);
-        let (o, d) = (ray.origin, ray.direction);
-        if o.is_finite() && d.is_finite() && d != Vec3::ZERO {
+        self.top = 1;
+        let (origin, direction) = (Vec4::from(self.origin), Vec4::from(self.direction));
+        // Infinities and what is not a number leave no zeros.
+        let is_finite = (origin * 0.0 + direction * 0.0).cmpeq(Vec4::ZERO).all();
+        if is_finite && direction.cmpne(Vec4::ZERO).any() {
             if let Some(root) = hierarchy.instances.root {
                 self.push(root);
             }
@@ -140,8 +150,7 @@ impl Slot {
         let direction = map.transform_vector3(ray.direction.as_dvec3()).as_vec3();
         let tree = hierarchy.tree_of(geometry, instance);
         self.instance = instance;
-        self.boxes = BoxRay::new(origin, direction, tree.size);
-        self.shear = Shear::new(origin, direction);
+        self.prepare(origin, direction, tree.size);
         self.push(Reference::LEAVE);
         if let Some(root) = tree.root {
             self.push(root);
@@ -156,9 +165,16 @@ impl Slot {
 
     #[inline(always)]
     fn in_world(&mut self, ray: &Ray, hierarchy: &Hierarchy) {
-        let size = hierarchy.own.size.max(hierarchy.instances.size);
         self.instance = NONE;
-        self.boxes = BoxRay::new(ray.origin, ray.direction, size);
-        self.shear = Shear::new(ray.origin, ray.direction);
+        self.prepare(ray.origin, ray.direction, hierarchy.world_size);
+    }
+
+    /// For a tree whose largest coordinate is `size`.
+    #[inline(always)]
+    fn prepare(&mut self, origin: Vec3, direction: Vec3, size: f32) {
+        let (origin, direction) = (origin.extend(0.0), direction.extend(0.0));
+        (self.origin, self.direction) = (origin.to_array(), direction.to_array());
+        self.boxes = BoxRay::new(origin, direction, size);
+        self.shear = Shear::new(&self.origin, &self.direction);
     }
 }

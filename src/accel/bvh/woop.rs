@@ -8,7 +8,6 @@
 //! Their second test, in double precision, is needed only where products leave the range of `f32`.
 
 use super::block::{Block, SIZE};
-use crate::math::Vec3;
 use bytemuck::{Pod, Zeroable};
 
 /// What is the same for all triangles.
@@ -27,15 +26,15 @@ pub(super) struct Shear {
 pub(super) const TRUSTED: std::ops::RangeInclusive<f32> = 1e-24..=1e36;
 
 impl Shear {
-    /// For a ray of non-zero direction.
+    /// For a ray of non-zero direction. Of origin and direction the fourth elements mean nothing.
     #[inline(always)]
-    pub(super) fn new(origin: Vec3, direction: Vec3) -> Self {
-        let size = direction.abs();
-        let y = u32::from(size.y > size.x);
-        let z = if size.z > size.x.max(size.y) { 2 } else { y };
+    pub(super) fn new(origin: &[f32; 4], direction: &[f32; 4]) -> Self {
+        let [x, y, z, _] = direction.map(f32::abs);
+        let largest = if z > x.max(y) { 2 } else { usize::from(y > x) };
         // Which of the other two is first turns all signs over, which the test does not see.
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z as usize];
-        let along = |values: Vec3, i: usize| values.to_array()[axes[i] as usize];
+        const AXES: [[u32; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+        let axes = AXES[largest];
+        let along = |values: &[f32; 4], i: usize| values[axes[i] as usize % 4];
         let depth = along(direction, 2);
         Self {
             origin: [along(origin, 0), along(origin, 1), along(origin, 2)],

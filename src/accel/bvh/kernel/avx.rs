@@ -77,9 +77,9 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
         let dot = |x: __m256d, y: __m256d, z: __m256d| {
             add(add(mul(x, normal[0]), mul(y, normal[1])), mul(z, normal[2]))
         };
-        let [dx, dy, dz] = slot.direction.to_array();
+        let [dx, dy, dz, _] = slot.direction;
         let minus_det = dot(all_lanes(dx), all_lanes(dy), all_lanes(dz));
-        let [ox, oy, oz] = slot.origin.to_array();
+        let [ox, oy, oz, _] = slot.origin;
         let height = dot(sub(all_lanes(ox), a[0]), sub(all_lanes(oy), a[1]), sub(all_lanes(oz), a[2]));
         // 1 / -x is -(1 / x), to the bit.
         let t = _mm256_cvtpd_ps(mul(height, _mm256_div_pd(_mm256_set1_pd(-1.0), minus_det)));

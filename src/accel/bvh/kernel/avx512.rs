@@ -156,9 +156,9 @@ fn distances(slot: &Slot, block: &Block) -> Distances {
     let dot = |x: __m512d, y: __m512d, z: __m512d| {
         add(add(mul(x, normal[0]), mul(y, normal[1])), mul(z, normal[2]))
     };
-    let [dx, dy, dz] = slot.direction.to_array();
+    let [dx, dy, dz, _] = slot.direction;
     let minus_det = dot(all(dx), all(dy), all(dz));
-    let [ox, oy, oz] = slot.origin.to_array();
+    let [ox, oy, oz, _] = slot.origin;
     let height = dot(sub(all(ox), a[0]), sub(all(oy), a[1]), sub(all(oz), a[2]));
     // 1 / -x is -(1 / x), to the bit.
     let t = _mm512_cvtpd_ps(mul(height, _mm512_div_pd(_mm512_set1_pd(-1.0), minus_det)));

@@ -117,7 +117,7 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
 /// See [`Kernel::distances`]. The operations of [`crate::geometry::intersect_triangle`], in its order.
 #[inline(always)]
 pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
-    let (o, d) = (slot.origin.as_dvec3().to_array(), slot.direction.as_dvec3().to_array());
+    let (o, d) = (slot.origin.map(f64::from), slot.direction.map(f64::from));
     let mut t = [0.0; SIZE];
     let (mut within, mut edge_on) = (0, 0);
     for (i, t) in t.iter_mut().enumerate() {
