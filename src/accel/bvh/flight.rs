@@ -165,10 +165,9 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
         slot.inside = kernel.inside(&slot.shear, hierarchy.block(slot.next));
         let hit = slot.inside.inside != 0;
         // What follows would be taken off the stack; a leaf that is hit stays, and waits for nothing.
-        let top = slot.top as usize - 1;
-        let follows = Reference(slot.references[top]);
-        slot.top = if hit { slot.top } else { top as u32 };
-        slot.next = if hit { slot.next } else { follows };
+        let (top, leaf) = (slot.top, slot.next);
+        let follows = slot.pop(top as usize);
+        (slot.top, slot.next) = if hit { (top, leaf) } else { (slot.top, follows) };
         prefetch(hierarchy, follows);
         waiting.push(i, if hit { Reference::new(Kind::Node, 0) } else { follows });
         u64::from(hit) << i

@@ -124,7 +124,10 @@ impl Hierarchy {
     /// Where the unit is that a reference to a node or a leaf names.
     #[inline(always)]
     pub(super) fn place(&self, reference: Reference) -> *const u8 {
-        self.units.as_ptr().wrapping_add(reference.number()).cast()
+        // The kind falls off the upper end; the machine scales by eight.
+        const { assert!(UNIT == 32) };
+        let offset = (reference.0 << 2) as usize * 8;
+        self.units.as_ptr().cast::<u8>().wrapping_add(offset)
     }
 
     /// The node that is referred to.

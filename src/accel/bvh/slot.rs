@@ -89,7 +89,9 @@ impl Slot {
         // Never empty: the reference that ends it is at the bottom.
         let top = top - 1;
         self.top = top as u32;
-        self.next = Reference(self.references[top]);
+        debug_assert!(top < ROOM);
+        // SAFETY: `Bvh::build` refuses hierarchies of which a walk could leave more for later than there is room for.
+        self.next = Reference(unsafe { *self.references.get_unchecked(top) });
         self.next
     }
 

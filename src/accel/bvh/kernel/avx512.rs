@@ -80,11 +80,12 @@ fn open<const ORDERED: bool>(slot: &mut Slot, node: &Node) -> usize {
     store4(&mut grid.step, 0, _mm_castps_si128(step));
     store4(&mut grid.near_base, 0, _mm_castps_si128(near_base));
     store4(&mut grid.far_base, 0, _mm_castps_si128(far_base));
-    let grid = std::hint::black_box(&grid);
+    // SAFETY: no instruction at all; that there could be one that reads it keeps the grid in the memory.
+    unsafe { std::arch::asm!("/* {0} */", in(reg) &raw const grid, options(nostack, preserves_flags)) };
     let mut entry = _mm512_set1_ps(slot.t_min);
     let mut exit = _mm512_set1_ps(slot.limit);
     for axis in 0..3 {
-        let near = slot.boxes.near[axis] as usize & WIDTH;
+        let near = slot.boxes.near[axis] as usize;
         let planes = &node.planes[axis];
         let step = _mm512_set1_ps(grid.step[axis]);
         let enters =
@@ -278,8 +279,8 @@ fn load4(values: &[f32; 4]) -> __m128 {
 #[target_feature(enable = "avx512f,avx512vl")]
 #[inline]
 fn to_f32<const N: usize>(bytes: &[u8; N], first: usize) -> __m512 {
-    assert!(first + 16 <= N);
-    // SAFETY: reads sixteen bytes, which are there.
+    debug_assert!(first + 16 <= N);
+    // SAFETY: reads sixteen bytes: `first` is from `BoxRay::near`, 0 or 16, or the other of the two.
     let bytes = unsafe { _mm_loadu_si128(bytes.as_ptr().wrapping_add(first).cast()) };
     _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(bytes))
 }
@@ -297,8 +298,8 @@ fn load16<T: Pod, const N: usize>(values: &[T; N], first: usize) -> __m512i {
 #[inline]
 fn store16<T: Pod, const N: usize>(values: &mut [T; N], first: usize, vector: __m512i) {
     const { assert!(size_of::<T>() == 4) };
-    assert!(first + 16 <= N);
-    // SAFETY: writes sixteen values, which are there.
+    debug_assert!(first + 16 <= N);
+    // SAFETY: writes sixteen values: stacks have room for them, see `Slot::pop`.
     unsafe { _mm512_storeu_si512(values.as_mut_ptr().wrapping_add(first).cast(), vector) }
 }
 
@@ -306,7 +307,7 @@ fn store16<T: Pod, const N: usize>(values: &mut [T; N], first: usize, vector: __
 #[inline]
 fn store4<T: Pod, const N: usize>(values: &mut [T; N], first: usize, vector: __m128i) {
     const { assert!(size_of::<T>() == 4) };
-    assert!(first + 4 <= N);
-    // SAFETY: writes four values, which are there.
+    debug_assert!(first + 4 <= N);
+    // SAFETY: as above.
     unsafe { _mm_storeu_si128(values.as_mut_ptr().wrapping_add(first).cast(), vector) }
 }
