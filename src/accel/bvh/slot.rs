@@ -173,7 +173,7 @@ impl Slot {
 
     /// For a tree whose largest coordinate is `size`.
     #[inline(always)]
-    fn prepare(&mut self, origin: Vec3, direction: Vec3, size: f32) {
+    pub(super) fn prepare(&mut self, origin: Vec3, direction: Vec3, size: f32) {
         let (origin, direction) = (origin.extend(0.0), direction.extend(0.0));
         (self.origin, self.direction) = (origin.to_array(), direction.to_array());
         self.boxes = BoxRay::new(origin, direction, size);
