@@ -11,7 +11,16 @@ use crate::os::{Isa, Kernel};
 /// The hit of `ray` on the primitive that a backend named.
 #[inline]
 pub fn resolve(geometry: &Geometry, ray: &Ray, id: PrimitiveId) -> Hit {
-    let (vertices, instance_magnitude) = geometry.world_vertices(id);
+    resolve_at(ray, id, geometry.world_vertices(id))
+}
+
+/// [`resolve`] with what [`Geometry::world_vertices`] says of the primitive.
+#[inline]
+pub(super) fn resolve_at(
+    ray: &Ray,
+    id: PrimitiveId,
+    (vertices, instance_magnitude): ([DVec3; 3], f32),
+) -> Hit {
     let TriangleHit { t, u, v, point, normal } = intersect_triangle(ray, &vertices);
     let offset = offset_distance(point, &vertices, instance_magnitude);
     Hit { t, u, v, offset, point, normal, id }

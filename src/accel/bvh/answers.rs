@@ -5,8 +5,18 @@
 
 use super::Bvh;
 use super::slot::Found;
-use crate::accel::resolve::{LANES, Lanes};
+use crate::accel::resolve::{LANES, Lanes, resolve_at};
 use crate::geometry::{Hit, Ray};
+use crate::math::DVec3;
+
+impl Bvh {
+    /// The corners of a triangle in a leaf, as [`crate::geometry::Geometry::world_vertices()`] gives them.
+    #[inline(always)]
+    fn vertices(&self, found: Found) -> ([DVec3; 3], f32) {
+        let corners = self.hierarchy.block(found.leaf).vertices(found.lane as usize);
+        self.geometry.placed_vertices(corners, found.instance)
+    }
+}
 
 /// Takes the answers of a batch.
 pub(super) trait Answers {
@@ -34,6 +44,19 @@ impl Answers for Ignored {
     fn take(&mut self, _: &Bvh, _: &[Ray], _: u32, _: Found) {}
 }
 
+/// Hit records, each resolved at once: where there are few.
+pub(super) struct FewHits<'a>(pub(super) &'a mut [Hit]);
+
+impl Answers for FewHits<'_> {
+    #[inline(always)]
+    fn take(&mut self, bvh: &Bvh, rays: &[Ray], place: u32, found: Found) {
+        self.0[place as usize] = match found.is_hit() {
+            true => resolve_at(&rays[place as usize], bvh.id(found), bvh.vertices(found)),
+            false => Hit::MISS,
+        };
+    }
+}
+
 /// Hit records.
 pub(super) struct Hits<'a> {
     hits: &'a mut [Hit],
@@ -57,9 +80,7 @@ impl<'a> Hits<'a> {
     pub(super) fn finish(&mut self, bvh: &Bvh, rays: &[Ray]) {
         let found = &self.found[..self.count];
         for (lane, (found, &place)) in found.iter().zip(&self.places).enumerate() {
-            let corners = bvh.hierarchy.block(found.leaf).vertices(found.lane as usize);
-            let vertices = bvh.geometry.placed_vertices(corners, found.instance);
-            self.lanes.set(lane, &rays[place as usize], vertices);
+            self.lanes.set(lane, &rays[place as usize], bvh.vertices(*found));
         }
         self.lanes.resolve();
         for (lane, (found, &place)) in found.iter().zip(&self.places).enumerate() {

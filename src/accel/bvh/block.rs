@@ -13,11 +13,14 @@ pub(super) const SIZE: usize = 8;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub(super) struct Block {
-    /// `corners[vertex][axis]`, a lane a triangle. What is absent is the first triangle once more.
+    /// `corners[vertex][axis]`, a lane a triangle. Absent lanes have the first triangle once more.
     pub(super) corners: [[[f32; SIZE]; 3]; 3],
-    /// Number of the triangle among those of all meshes of its hierarchy.
+    /// Number of the triangle among those of all meshes of its hierarchy; in absent lanes with the uppermost bit.
     pub(super) triangles: [u32; SIZE],
 }
+
+/// Marks lanes without a triangle.
+pub(super) const ABSENT: u32 = 1 << 31;
 
 const _: () = assert!(size_of::<Block>() == LEAF_UNITS * UNIT);
 
@@ -27,7 +30,7 @@ impl Block {
         let mut block = Self::zeroed();
         for lane in 0..SIZE {
             let triangle = triangles[if lane < triangles.len() { lane } else { 0 }];
-            block.triangles[lane] = triangle;
+            block.triangles[lane] = if lane < triangles.len() { triangle } else { triangle | ABSENT };
             for (of_vertex, corner) in block.corners.iter_mut().zip(meshes.vertices(triangle)) {
                 for (axis, lanes) in of_vertex.iter_mut().enumerate() {
                     lanes[lane] = corner[axis];

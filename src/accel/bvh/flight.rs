@@ -5,27 +5,20 @@
 //! O. Kocberber et al., "Asynchronous Memory Access Chaining", VLDB 9(4), 2015. What a ray hits does not depend on
 //! what flies beside it. Knows how steps follow each other; what they compute is in `kernel`.
 
-use super::Bvh;
 use super::answers::Answers;
-use super::block::SIZE;
 use super::hierarchy::Hierarchy;
-use super::kernel::{Distances, Inside, Kernel, Task};
+use super::kernel::{Kernel, Task};
 use super::node::{Kind, Reference};
-use super::slot::{self, Found, Slot};
-use crate::accel::{HitFilter, resolve};
-use crate::geometry::{NONE, Ray};
+use super::slot::{self, Slot};
+use super::walk::Batch;
+use crate::accel::HitFilter;
 use std::cell::RefCell;
 
 /// Rays in flight, a power of two up to 64: enough to hide the memory's latency, few enough for the first-level cache.
 const IN_FLIGHT: usize = 64;
 
-/// A batch of queries. `ANY`: the first hit is enough.
-pub(super) struct Batch<'a, F, A, const ANY: bool> {
-    pub(super) bvh: &'a Bvh,
-    pub(super) rays: &'a [Ray],
-    pub(super) filter: &'a F,
-    pub(super) answers: &'a mut A,
-}
+/// Fewer rays are traced one after the other.
+pub(super) const FEW: usize = 4;
 
 thread_local! {
     /// The slots of a thread, kept from batch to batch.
@@ -38,7 +31,9 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Task for Batch<'_, F, A, ANY> {
         // Taken out, so that a filter that asks the accelerator from inside a query gets its own.
         let kept = SLOTS.with(|slots| slots.borrow_mut().take());
         let mut slots = kept.unwrap_or_else(|| slot::slots(IN_FLIGHT));
-        if let Some(slots) = slots.first_chunk_mut() {
+        if self.rays.len() < FEW {
+            one_by_one(self, kernel, &mut slots[0]);
+        } else if let Some(slots) = slots.first_chunk_mut() {
             Flight { batch: self, slots, begun: 0 }.run(kernel);
         }
         SLOTS.with(|kept| *kept.borrow_mut() = Some(slots));
@@ -92,6 +87,37 @@ fn bits(mut mask: u64) -> impl Iterator<Item = u32> {
     })
 }
 
+/// Traces rays one after the other, each to its end: for those that have no company.
+#[inline(always)]
+fn one_by_one<K: Kernel, F: HitFilter, A: Answers, const ANY: bool>(
+    batch: Batch<'_, F, A, ANY>,
+    kernel: K,
+    slot: &mut Slot,
+) {
+    slot.reset();
+    for (ray, place) in batch.rays.iter().zip(0..) {
+        slot.begin(ray, place, &batch.bvh.hierarchy);
+        let mut top = slot.top as usize;
+        loop {
+            let next = slot.pop(top);
+            top = if next.kind() == Kind::Node as usize {
+                batch.open(kernel, slot)
+            } else if next.kind() == Kind::Leaf as usize {
+                match batch.test(kernel, slot) {
+                    true => batch.measure(kernel, slot),
+                    false => slot.top as usize,
+                }
+            } else if next == Reference::DONE {
+                break;
+            } else {
+                batch.change_space(slot);
+                slot.top as usize
+            };
+        }
+        batch.answers.take(batch.bvh, batch.rays, slot.ray, slot.best);
+    }
+}
+
 /// The state of a batch.
 struct Flight<'a, F, A, const ANY: bool> {
     batch: Batch<'a, F, A, ANY>,
@@ -108,19 +134,13 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
         let count = IN_FLIGHT.min(self.batch.rays.len());
         let mut flying = u64::MAX >> (64 - count.max(1));
         for i in bits(flying) {
-            self.slot(i).reset();
+            self.slots[i as usize].reset();
             waiting.push(i, Reference::DONE);
         }
         while flying != 0 {
             // Open a node each.
             for i in bits(flying & !(waiting.low | waiting.high)) {
-                let hierarchy = &self.batch.bvh.hierarchy;
-                let slot = self.slot(i);
-                let node = hierarchy.node(slot.next);
-                let top = match ANY {
-                    true => kernel.open::<false>(slot, node),
-                    false => kernel.open::<true>(slot, node),
-                };
+                let top = self.batch.open(kernel, &mut self.slots[i as usize & (IN_FLIGHT - 1)]);
                 self.advance(i, top, &mut waiting);
             }
             // Test the edges of a leaf each: most are missed, and their rays go on at once.
@@ -130,7 +150,7 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
             }
             // Measure the distances of the others.
             for i in bits(hit) {
-                let top = self.measure(kernel, i);
+                let top = self.batch.measure(kernel, &mut self.slots[i as usize & (IN_FLIGHT - 1)]);
                 self.advance(i, top, &mut waiting);
             }
             // Enter or leave an object, or end a ray and begin another.
@@ -143,27 +163,21 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
         }
     }
 
-    #[inline(always)]
-    fn slot(&mut self, i: u32) -> &mut Slot {
-        &mut self.slots[i as usize & (IN_FLIGHT - 1)]
-    }
-
     /// Takes the next reference off the stack, asks the memory for it and queues the slot.
     #[inline(always)]
     fn advance(&mut self, i: u32, top: usize, waiting: &mut Waiting) {
-        let next = self.slot(i).pop(top);
+        let next = self.slots[i as usize & (IN_FLIGHT - 1)].pop(top);
         prefetch(&self.batch.bvh.hierarchy, next);
         waiting.push(i, next);
     }
 
-    /// Tests the edges of a leaf's triangles. If the ray is inside of any, returns the slot's bit; otherwise advances.
-    /// Which it is cannot be predicted: without a branch.
+    /// Tests a leaf. If the ray is inside of any triangle's edges, returns the slot's bit; otherwise advances. Which it is
+    /// cannot be predicted: without a branch.
     #[inline(always)]
     fn test<K: Kernel>(&mut self, kernel: K, i: u32, waiting: &mut Waiting) -> u64 {
         let hierarchy = &self.batch.bvh.hierarchy;
-        let slot = self.slot(i);
-        slot.inside = kernel.inside(&slot.shear, hierarchy.block(slot.next));
-        let hit = slot.inside.inside != 0;
+        let slot = &mut self.slots[i as usize & (IN_FLIGHT - 1)];
+        let hit = self.batch.test(kernel, slot);
         // What follows would be taken off the stack; a leaf that is hit stays, and waits for nothing.
         let (top, leaf) = (slot.top, slot.next);
         let follows = slot.pop(top as usize);
@@ -173,115 +187,18 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
         u64::from(hit) << i
     }
 
-    /// Measures how far the triangles are whose edges the ray is inside; returns the height of the stack.
-    #[inline(always)]
-    fn measure<K: Kernel>(&mut self, kernel: K, i: u32) -> usize {
-        let Batch { bvh, .. } = &self.batch;
-        let bvh = *bvh;
-        let slot = self.slot(i);
-        let Inside { inside, unsure } = slot.inside;
-        let top = slot.top as usize;
-        let is_better = if slot.instance == NONE && unsure == 0 {
-            let Distances { t, within, edge_on } = kernel.distances(slot, bvh.hierarchy.block(slot.next));
-            let nearer = inside & (within | edge_on);
-            let lane = nearer.trailing_zeros() & (SIZE as u32 - 1);
-            let distance = t[lane as usize];
-            // One at most, and not at the same distance as the best.
-            let is_simple = nearer & (nearer.wrapping_sub(1) | edge_on) == 0 && distance != slot.limit;
-            if is_simple && !(F::REFUSES && bvh.has_filters) {
-                let found = Found { leaf: slot.next, lane, instance: NONE };
-                let is_better = nearer != 0;
-                slot.limit = if is_better { distance } else { slot.limit };
-                slot.best = if is_better { found } else { slot.best };
-                is_better
-            } else if edge_on & nearer == 0 {
-                self.consider(i, nearer, &t)
-            } else {
-                self.consider_with_care(i, inside, unsure)
-            }
-        } else {
-            self.consider_with_care(i, inside, unsure)
-        };
-        match ANY {
-            // Down to the reference that ends it.
-            true => if is_better { 1 } else { top },
-            false => kernel.prune(self.slot(i)),
-        }
-    }
-
-    /// Takes those triangles of a leaf, at these distances, that are not beyond the best so far; whether there
-    /// were any.
-    #[inline(never)]
-    fn consider(&mut self, i: u32, mut nearer: u32, distances: &[f32; SIZE]) -> bool {
-        let Batch { bvh, rays, filter, .. } = &self.batch;
-        let (bvh, rays, filter) = (*bvh, *rays, *filter);
-        let slot = self.slot(i);
-        let mut is_better = false;
-        while nearer != 0 {
-            let lane = nearer.trailing_zeros() as usize & (SIZE - 1);
-            nearer &= nearer - 1;
-            let t = distances[lane];
-            let found = Found { leaf: slot.next, lane: lane as u32, instance: slot.instance };
-            if t > slot.limit {
-                continue;
-            }
-            // Ties go to the smallest id.
-            if t == slot.limit && bvh.id(slot.best) < bvh.id(found) {
-                continue;
-            }
-            if F::REFUSES && bvh.has_filters {
-                let id = bvh.id(found);
-                let ray = &rays[slot.ray as usize];
-                let asked = bvh.geometry.mesh(id).filtered;
-                if asked && !filter.accept(ray, &resolve(&bvh.geometry, ray, id)) {
-                    continue;
-                }
-            }
-            (slot.limit, slot.best) = (t, found);
-            is_better = true;
-        }
-        is_better
-    }
-
-    /// [`Self::consider`] where it is not as simple: in instances, where products leave the range of `f32`, and
-    /// edge-on.
-    #[inline(never)]
-    fn consider_with_care(&mut self, i: u32, inside: u32, unsure: u32) -> bool {
-        let (bvh, rays) = (self.batch.bvh, self.batch.rays);
-        let slot = self.slot(i);
-        let block = bvh.hierarchy.block(slot.next);
-        let mut t = [0.0; SIZE];
-        let mut nearer = 0;
-        for lane in (0..SIZE).filter(|lane| inside >> lane & 1 != 0) {
-            if unsure >> lane & 1 == 0 || slot.shear.is_inside(block, lane) {
-                let id =
-                    bvh.id(Found { leaf: slot.next, lane: lane as u32, instance: slot.instance });
-                t[lane] = resolve(&bvh.geometry, &rays[slot.ray as usize], id).t;
-                nearer |= u32::from(t[lane] > slot.t_min && t[lane] <= slot.limit) << lane;
-            }
-        }
-        self.consider(i, nearer, &t)
-    }
-
     /// What is neither node nor leaf. Returns the height of the stack, or nothing if the slot is no longer needed.
     #[inline(always)]
     fn turn(&mut self, i: u32) -> Option<usize> {
-        let Batch { bvh, rays, answers, .. } = &mut self.batch;
-        let (hierarchy, geometry) = (&bvh.hierarchy, &bvh.geometry);
         let slot = &mut self.slots[i as usize & (IN_FLIGHT - 1)];
-        match slot.next {
-            Reference::DONE => {
-                answers.take(bvh, rays, slot.ray, slot.best);
-                let ray = rays.get(self.begun)?;
-                slot.begin(ray, self.begun as u32, hierarchy);
-                self.begun += 1;
-            }
-            Reference::LEAVE => slot.leave(&rays[slot.ray as usize], hierarchy),
-            reference => {
-                if let Some(instance) = hierarchy.instance(reference) {
-                    slot.enter(&rays[slot.ray as usize], instance, hierarchy, geometry);
-                }
-            }
+        if slot.next == Reference::DONE {
+            let Batch { bvh, rays, answers, .. } = &mut self.batch;
+            answers.take(bvh, rays, slot.ray, slot.best);
+            let ray = rays.get(self.begun)?;
+            slot.begin(ray, self.begun as u32, &bvh.hierarchy);
+            self.begun += 1;
+        } else {
+            self.batch.change_space(slot);
         }
         Some(slot.top as usize)
     }

@@ -17,6 +17,7 @@ mod node;
 mod ray;
 mod slot;
 mod validate;
+mod walk;
 mod woop;
 
 pub use kernel::Steps;
@@ -25,12 +26,12 @@ pub use validate::TreeStatistics;
 use super::{Accelerator, BuildStats, HitFilter};
 use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
-use answers::{Blocked, Hits, Ignored};
-use flight::Batch;
+use answers::{Blocked, FewHits, Hits, Ignored};
 use hierarchy::Hierarchy;
 use kernel::Count;
 use node::Reference;
 use slot::Found;
+use walk::Batch;
 use std::cell::Cell;
 use std::sync::Arc;
 use std::time::Instant;
@@ -90,9 +91,14 @@ impl Bvh {
 
 impl Accelerator for Bvh {
     fn closest<F: HitFilter>(&self, rays: &[Ray], filter: &F, hits: &mut [Hit]) {
-        let answers = &mut Hits::new(hits);
-        kernel::dispatch(Batch::<_, _, false> { bvh: self, rays, filter, answers });
-        answers.finish(self, rays);
+        if rays.len() < flight::FEW {
+            let answers = &mut FewHits(hits);
+            kernel::dispatch(Batch::<_, _, false> { bvh: self, rays, filter, answers });
+        } else {
+            let answers = &mut Hits::new(hits);
+            kernel::dispatch(Batch::<_, _, false> { bvh: self, rays, filter, answers });
+            answers.finish(self, rays);
+        }
     }
 
     fn occluded<F: HitFilter>(&self, rays: &[Ray], filter: &F, blocked: &mut [bool]) {

@@ -127,7 +127,7 @@ impl<'a> Walk<'a> {
         let mut count = 0;
         for lane in 0..block::SIZE {
             let triangle = block.triangles[lane];
-            if block.triangles[..lane].contains(&triangle) {
+            if triangle & block::ABSENT != 0 {
                 continue;
             }
             count += 1;

@@ -34,7 +34,10 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
     let is_above = |x| _mm256_cmp_ps::<_CMP_GT_OQ>(x, zero);
     let below = _mm256_or_ps(_mm256_or_ps(is_below(u), is_below(v)), is_below(w));
     let above = _mm256_or_ps(_mm256_or_ps(is_above(u), is_above(v)), is_above(w));
-    let inside = !_mm256_movemask_ps(_mm256_and_ps(below, above)) as u32 & 0xff;
+    // The sign of a number of a triangle says that it is absent.
+    let absent = load8(bytemuck::must_cast_ref(&block.triangles));
+    let outside = _mm256_or_ps(_mm256_and_ps(below, above), absent);
+    let inside = !_mm256_movemask_ps(outside) as u32 & 0xff;
     let size = |edge| _mm256_andnot_ps(_mm256_set1_ps(-0.0), edge);
     let sum = _mm256_add_ps(_mm256_add_ps(size(u), size(v)), size(w));
     let sure = _mm256_and_ps(

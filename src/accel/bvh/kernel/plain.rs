@@ -1,7 +1,7 @@
 //! Loops over arrays, which the compiler turns into whatever vectors the machine has.
 
 use super::{Distances, Inside, Kernel};
-use crate::accel::bvh::block::{Block, SIZE};
+use crate::accel::bvh::block::{ABSENT, Block, SIZE};
 use crate::accel::bvh::node::{Node, WIDTH};
 use crate::accel::bvh::slot::{SPARE, Slot};
 use crate::accel::bvh::woop::{Shear, TRUSTED};
@@ -108,7 +108,8 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
         let is_front = !((u < 0.0) | (v < 0.0) | (w < 0.0));
         let is_back = !((u > 0.0) | (v > 0.0) | (w > 0.0));
         let sum = u.abs() + v.abs() + w.abs();
-        inside |= u32::from(is_front | is_back) << i;
+        let is_present = block.triangles[i] & ABSENT == 0;
+        inside |= u32::from((is_front | is_back) & is_present) << i;
         sure |= u32::from(TRUSTED.contains(&sum)) << i;
     }
     Inside { inside, unsure: inside & !sure }

@@ -1,0 +1,136 @@
+//! What a ray does in each of its steps: opens a node, tests a leaf, enters or leaves an object.
+//!
+//! Which triangle is hit is decided here, by edges and distances alone: neither the order of the steps nor the rays
+//! beside it can change that. Knows neither how many rays are under way nor in which order they take their steps.
+
+use super::Bvh;
+use super::block::SIZE;
+use super::kernel::{Distances, Inside, Kernel};
+use super::node::Reference;
+use super::slot::{Found, Slot};
+use crate::accel::{HitFilter, resolve};
+use crate::geometry::{NONE, Ray};
+
+/// A batch of queries. `ANY`: the first hit is enough.
+pub(super) struct Batch<'a, F, A, const ANY: bool> {
+    pub(super) bvh: &'a Bvh,
+    pub(super) rays: &'a [Ray],
+    pub(super) filter: &'a F,
+    pub(super) answers: &'a mut A,
+}
+
+impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
+    /// Opens the node that is next; returns the height of the stack.
+    #[inline(always)]
+    pub(super) fn open<K: Kernel>(&self, kernel: K, slot: &mut Slot) -> usize {
+        let node = self.bvh.hierarchy.node(slot.next);
+        match ANY {
+            true => kernel.open::<false>(slot, node),
+            false => kernel.open::<true>(slot, node),
+        }
+    }
+
+    /// Tests the edges of the leaf that is next; whether the ray is inside those of any triangle.
+    #[inline(always)]
+    pub(super) fn test<K: Kernel>(&self, kernel: K, slot: &mut Slot) -> bool {
+        slot.inside = kernel.inside(&slot.shear, self.bvh.hierarchy.block(slot.next));
+        slot.inside.inside != 0
+    }
+
+    /// Measures how far the triangles are whose edges the ray is inside; returns the height of the stack.
+    #[inline(always)]
+    pub(super) fn measure<K: Kernel>(&self, kernel: K, slot: &mut Slot) -> usize {
+        let bvh = self.bvh;
+        let Inside { inside, unsure } = slot.inside;
+        let top = slot.top as usize;
+        let is_better = if slot.instance == NONE && unsure == 0 {
+            let Distances { t, within, edge_on } = kernel.distances(slot, bvh.hierarchy.block(slot.next));
+            let nearer = inside & (within | edge_on);
+            let lane = nearer.trailing_zeros() & (SIZE as u32 - 1);
+            let distance = t[lane as usize];
+            // One at most, and not at the same distance as the best.
+            let is_simple = nearer & (nearer.wrapping_sub(1) | edge_on) == 0 && distance != slot.limit;
+            if is_simple && !(F::REFUSES && bvh.has_filters) {
+                let found = Found { leaf: slot.next, lane, instance: NONE };
+                let is_better = nearer != 0;
+                slot.limit = if is_better { distance } else { slot.limit };
+                slot.best = if is_better { found } else { slot.best };
+                is_better
+            } else if edge_on & nearer == 0 {
+                self.consider(slot, nearer, &t)
+            } else {
+                self.consider_with_care(slot, inside, unsure)
+            }
+        } else {
+            self.consider_with_care(slot, inside, unsure)
+        };
+        match ANY {
+            // Down to the reference that ends it.
+            true => if is_better { 1 } else { top },
+            false => kernel.prune(slot),
+        }
+    }
+
+    /// Takes those triangles of a leaf, at these distances, that are not beyond the best so far; whether there
+    /// were any.
+    #[inline(never)]
+    fn consider(&self, slot: &mut Slot, mut nearer: u32, distances: &[f32; SIZE]) -> bool {
+        let (bvh, rays, filter) = (self.bvh, self.rays, self.filter);
+        let mut is_better = false;
+        while nearer != 0 {
+            let lane = nearer.trailing_zeros() as usize & (SIZE - 1);
+            nearer &= nearer - 1;
+            let t = distances[lane];
+            let found = Found { leaf: slot.next, lane: lane as u32, instance: slot.instance };
+            if t > slot.limit {
+                continue;
+            }
+            // Ties go to the smallest id.
+            if t == slot.limit && bvh.id(slot.best) < bvh.id(found) {
+                continue;
+            }
+            if F::REFUSES && bvh.has_filters {
+                let id = bvh.id(found);
+                let ray = &rays[slot.ray as usize];
+                let asked = bvh.geometry.mesh(id).filtered;
+                if asked && !filter.accept(ray, &resolve(&bvh.geometry, ray, id)) {
+                    continue;
+                }
+            }
+            (slot.limit, slot.best) = (t, found);
+            is_better = true;
+        }
+        is_better
+    }
+
+    /// [`Self::consider`] where it is not as simple: in instances, where products leave the range of `f32`, and
+    /// edge-on.
+    #[inline(never)]
+    fn consider_with_care(&self, slot: &mut Slot, inside: u32, unsure: u32) -> bool {
+        let (bvh, rays) = (self.bvh, self.rays);
+        let block = bvh.hierarchy.block(slot.next);
+        let mut t = [0.0; SIZE];
+        let mut nearer = 0;
+        for lane in (0..SIZE).filter(|lane| inside >> lane & 1 != 0) {
+            if unsure >> lane & 1 == 0 || slot.shear.is_inside(block, lane) {
+                let id =
+                    bvh.id(Found { leaf: slot.next, lane: lane as u32, instance: slot.instance });
+                t[lane] = resolve(&bvh.geometry, &rays[slot.ray as usize], id).t;
+                nearer |= u32::from(t[lane] > slot.t_min && t[lane] <= slot.limit) << lane;
+            }
+        }
+        self.consider(slot, nearer, &t)
+    }
+
+    /// What is neither node nor leaf, nor the end.
+    #[inline(always)]
+    pub(super) fn change_space(&self, slot: &mut Slot) {
+        let (hierarchy, geometry) = (&self.bvh.hierarchy, &self.bvh.geometry);
+        let ray = &self.rays[slot.ray as usize];
+        if slot.next == Reference::LEAVE {
+            slot.leave(ray, hierarchy);
+        } else if let Some(instance) = hierarchy.instance(slot.next) {
+            slot.enter(ray, instance, hierarchy, geometry);
+        }
+    }
+}
