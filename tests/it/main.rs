@@ -23,6 +23,7 @@ mod load_mutations;
 mod load_options;
 mod mtl;
 mod obj;
+mod oracle;
 mod scene_file;
 mod scene_file_errors;
 mod statistics;
