@@ -12,9 +12,9 @@
 //!
 //! Under an instance it works in the space of the object. The ray that it uses has been rounded to `f32` after
 //! a map in `f64`: the origin is off by u |o|, seen along the ray by 2u |o|; S by two more roundings, 2u |S Z|. Together
-//! **8 ulps of M and 2 ulps of the largest coordinate of the origin there**. The errors of the map and its inverse,
-//! and of the corners' map to the world, count in units of 2^-53, but times the condition of the map (its square, for
-//! directions): they matter to maps that squeeze a thousandfold.
+//! **8 ulps of M and 2 ulps of the largest coordinate of the origin there**. The map, its inverse and that of the
+//! corners to the world round to 53 bits; that counts where a map squeezes a thousandfold or places something
+//! small far away, and is bounded for the ray at hand (`KernelRay::in_object`).
 //!
 //! Now move the corners steadily from where they are to where the kernel puts them. If the ray is inside before
 //! and outside after, or the other way round, some edge has passed over it. That edge's ends have moved by
@@ -25,7 +25,7 @@
 use super::placed::Placement;
 use super::tree::Bounds;
 use crate::geometry::Ray;
-use crate::math::{DVec3, UNIT_ROUNDOFF, Vec3};
+use crate::math::{DMat3, DVec3, UNIT_ROUNDOFF, Vec3};
 
 /// How far from an edge a ray passes, projected along the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +63,10 @@ const U: f64 = UNIT_ROUNDOFF as f64;
 const MORE: f64 = 1.001;
 /// Smallest positive `f32`.
 const SUBNORMAL: f64 = f32::from_bits(1) as f64;
-/// A hundred units of round-off of `f64`: more than all operations of a map, its inverse and a product.
-const MAPPED: f64 = 50.0 * f64::EPSILON;
+/// 16 units of round-off of `f64`: twice more than four operations in a row, and the terms of second order.
+const MAPPED: f64 = 8.0 * f64::EPSILON;
+/// From here on the kernel's coordinates may overflow.
+const LARGEST: f64 = f32::MAX as f64 / 4.0;
 
 impl KernelRay {
     /// Towards meshes that stand in the world.
@@ -78,19 +80,41 @@ impl KernelRay {
     }
 
     /// Towards the object of an instance.
+    ///
+    /// How far the mapped origin and direction are off is measured: with L the linear part of the map, T its translation
+    /// and L' the inverse as computed, the direction d' = L' d is off by L^-1 (d - L d'), and the origin likewise. That
+    /// residual, and what its own rounding hides, is bounded here coordinate by coordinate.
     pub(super) fn in_object(ray: &Ray, placement: &Placement) -> Self {
-        let world = ray.origin.as_dvec3();
-        let origin = placement.point_to_object(world);
-        let direction = placement.vector_to_object(ray.direction.as_dvec3());
+        let Placement { world_from_object: map, object_from_world: inverse, .. } = placement;
+        let (world, towards) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+        let origin = inverse.transform_point3(world);
+        let direction = inverse.transform_vector3(towards);
+        let (linear, back) = (absolute(&map.matrix3), absolute(&inverse.matrix3));
+        // Twice, since L^-1 itself is known as L' only.
+        let off = |residual: DVec3, terms: DVec3| {
+            2.0 * (back * (residual.abs() + terms * MAPPED)).max_element()
+        };
+        let translation = map.translation.abs();
+        let origin_off = off(
+            world - map.transform_point3(origin),
+            linear * origin.abs() + translation + world.abs(),
+        );
+        let direction_off = off(
+            towards - map.transform_vector3(direction),
+            linear * direction.abs() + towards.abs(),
+        );
+        // Corners in the world are off by `MAPPED` of |L p| + |T|, where |p| is at most |o| + M.
         let size = origin.abs().max_element();
-        let Placement { condition, inverse_norm, .. } = *placement;
-        let translation = placement.world_from_object.translation;
-        let mapped = inverse_norm * (world.length() + translation.length()) + size;
+        let stretch = MAPPED * (back * (linear * DVec3::ONE)).max_element();
+        let translated = MAPPED * (back * translation).max_element();
+        let turned = (direction_off + SUBNORMAL) / direction.abs().max_element();
         Self {
             origin,
             direction,
-            per_size: 8.0 * MORE * U + MAPPED * condition * condition,
-            fixed: SUBNORMAL + 2.0 * MORE * U * size + MAPPED * condition * mapped,
+            per_size: 8.0 * MORE * U + 2.0 * MORE * turned + 2.0 * stretch,
+            fixed: 3.0 * SUBNORMAL
+                + 2.0 * MORE * (U * size + origin_off)
+                + 2.0 * (stretch * size + translated),
         }
     }
 
@@ -102,7 +126,8 @@ impl KernelRay {
             // Not 0 where both ends are the origin.
             let ulp = (U * size).max(SUBNORMAL);
             let ulps = self.segment_distance(p, q) / ulp;
-            EdgeDistance { ulps, band: (self.per_size * size + self.fixed) / ulp }
+            let band = (self.per_size * size + self.fixed) / ulp;
+            EdgeDistance { ulps, band: if size < LARGEST { band } else { f64::INFINITY } }
         })
     }
 
@@ -128,6 +153,11 @@ impl KernelRay {
             })
             .fold(f64::INFINITY, f64::min)
     }
+}
+
+/// The same map of absolute values.
+fn absolute(m: &DMat3) -> DMat3 {
+    DMat3::from_cols(m.x_axis.abs(), m.y_axis.abs(), m.z_axis.abs())
 }
 
 /// The distance of (0, 0) from a segment, as the larger of the two coordinates.

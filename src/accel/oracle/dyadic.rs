@@ -237,7 +237,7 @@ mod tests {
         let mut rng = CounterRng::new(0);
         let zero = exactly(0.0);
         let mut signs = [0; 3];
-        for _ in 0..4000 {
+        for _ in 0..1000 {
             let [a, b, c, d] = std::array::from_fn(|_| number(&mut rng));
             let [p, q, r, s] = [a, b, c, d].map(Dyadic::new);
             assert_eq!(rational(&p), exactly(a));
@@ -252,13 +252,14 @@ mod tests {
             if r.sign().is_ne() {
                 let [low, high] = value.ratio_bounds(&r);
                 let ratio = &truth / &z;
-                assert!(exactly(low) <= ratio && (high == f64::INFINITY || ratio <= exactly(high)));
+                assert!(low == f64::NEG_INFINITY || exactly(low) <= ratio);
+                assert!(high == f64::INFINITY || ratio <= exactly(high));
                 let magnitude = low.abs();
                 if 1e-290 < magnitude && magnitude < 1e290 {
                     assert!(high - low <= 1e-14 * magnitude);
                 }
             }
         }
-        assert!(signs.iter().all(|&n| n > 50), "{signs:?}");
+        assert!(signs.iter().all(|&n| n > 20), "{signs:?}");
     }
 }

@@ -81,7 +81,7 @@ pub struct Judgement {
     /// How far outside of the edges of the answer the ray passes; `None` if it meets the answer, or it is a miss.
     pub outside: Option<EdgeDistance>,
     /// Of the triangles that are met and whose `f32` distance (or at equal distances, id) is smaller than that of the
-    /// answer, the one whose omission is hardest to excuse. Not looked for if the class is `Right`.
+    /// answer, the one whose omission is hardest to excuse. Not looked for if the answer is right, or the first of a tie.
     pub overlooked: Option<Overlooked>,
     /// How far the answer is behind the first that is met, or from the end of the interval that it is not within: in ulps
     /// of the `f32` distance. 0 where that is not the question.
@@ -111,6 +111,8 @@ impl Oracle {
         match verdict.nearest.as_slice() {
             [] if answer == PrimitiveId::MISS => return Judgement::of(Class::Right),
             [(only, _)] if answer == *only => return Judgement::of(Class::Right),
+            // Of several that are equally near the rule wants the first.
+            [(first, _), ..] if answer == *first => return Judgement::of(Class::Tie),
             _ => {}
         }
         if answer == PrimitiveId::MISS {

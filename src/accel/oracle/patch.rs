@@ -37,7 +37,7 @@ pub(super) struct Near {
 /// Triangles connected by edges within the band.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Patch {
-    /// An odd number of triangles is over the ray.
+    /// An odd number of triangles is over the ray; unknown if it is open.
     pub(super) is_odd: bool,
     /// One of the edges is shared by an odd number of triangles.
     pub(super) is_open: bool,
@@ -158,7 +158,12 @@ fn connect(
     }
     for (i, near) in near.iter_mut().enumerate() {
         near.patch = root(&mut parents, i);
-        patches[near.patch].is_odd ^= is_over(&Exact::new(ray, &oracle.geometry.world_vertices(near.id).0));
+        let patch = &mut patches[near.patch];
+        // Of an open patch no one asks.
+        if !patch.is_open {
+            let vertices = oracle.geometry.world_vertices(near.id).0;
+            patch.is_odd ^= is_over(&Exact::new(ray, &vertices));
+        }
     }
     patches
 }

@@ -2,7 +2,7 @@
 
 use super::tree::{Bounds, BoxTree};
 use crate::geometry::{Instance, TriangleMesh};
-use crate::math::{DAffine3, DVec3, Vec3};
+use crate::math::{DAffine3, Vec3};
 
 /// A tree over the triangles of some meshes, in their own space.
 pub(super) struct MeshTree {
@@ -48,10 +48,6 @@ pub(super) struct Placement {
     pub(super) object: u32,
     pub(super) world_from_object: DAffine3,
     pub(super) object_from_world: DAffine3,
-    /// Frobenius norm of the linear part of `object_from_world`.
-    pub(super) inverse_norm: f64,
-    /// The same times that of `world_from_object`: how much larger a relative error may become in a map.
-    pub(super) condition: f64,
 }
 
 impl Placement {
@@ -59,17 +55,8 @@ impl Placement {
     pub(super) fn new(instance: &Instance) -> Option<Self> {
         let world_from_object = instance.world_from_object.to_f64();
         let object_from_world = world_from_object.inverse();
-        let norm =
-            |m: &DAffine3| m.matrix3.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
-        let inverse_norm = norm(&object_from_world);
-        let condition = inverse_norm * norm(&world_from_object);
-        (object_from_world.is_finite() && condition.is_finite()).then_some(Self {
-            object: instance.object,
-            world_from_object,
-            object_from_world,
-            inverse_norm,
-            condition,
-        })
+        let is_regular = world_from_object.is_finite() && object_from_world.is_finite();
+        is_regular.then_some(Self { object: instance.object, world_from_object, object_from_world })
     }
 
     /// A box in world space around all that lies in `bounds`: around the very numbers that
@@ -89,15 +76,5 @@ impl Placement {
             size += p.abs().max(q.abs());
         }
         Bounds { low, high }.padded(size * PAD)
-    }
-
-    /// A vector of the world as the object sees it.
-    pub(super) fn vector_to_object(&self, v: DVec3) -> DVec3 {
-        self.object_from_world.transform_vector3(v)
-    }
-
-    /// A point of the world as the object sees it.
-    pub(super) fn point_to_object(&self, p: DVec3) -> DVec3 {
-        self.object_from_world.transform_point3(p)
     }
 }
