@@ -131,10 +131,10 @@ fn approximate_parameter(sides: &[Approximate; 3], numerator: Approximate) -> Op
     // n / d - n' / d' = (n - n') / d - (n' / d') (d - d') / d, and |d| is at least |d'| less its error. Doubled
     // for what is rounded here.
     let off = 2.0 * (numerator.error + t.abs() * error) / (denominator - error);
+    // False for NaN, which 0 / 0 gives. Where it is true little was lost to cancellation, so that t is about as large
+    // as a distance by a direction, 2^-426 to 2^407: no under- or overflow.
     let is_good = denominator > 2.0 * error && off <= t.abs() * GOOD;
-    // Far from under- and overflow, so that the bounds are.
-    let is_usual = t.abs() > 1e-250 && t.abs() < 1e250;
-    (is_good && is_usual).then(|| [t - off, t + off])
+    is_good.then(|| [t - off, t + off])
 }
 
 /// Relative error up to which bounds of a parameter are good enough: 1/4096 of a unit in the last place of `f32`.

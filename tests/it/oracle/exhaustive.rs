@@ -105,6 +105,29 @@ fn neighbours_of_small_whole_numbers() {
     assert!(all_seen(&seen, &EVERYTHING), "{seen:?}");
 }
 
+/// Triangles that lie across an axis, so that their boxes have no thickness, and rays exactly through a corner along
+/// thirds, fifths and sevenths: a box test that rounds to nearest leaves some out.
+#[test]
+fn corners_of_flat_boxes() {
+    let mut hostile = Hostile(CounterRng::new(7));
+    let mut whole = |n: u32| (hostile.below(2 * n + 1) as f32) - n as f32;
+    let mut positions = Vec::new();
+    for i in 0..60 {
+        let mut corners = [0; 3].map(|_| [0; 3].map(|_| whole(7)));
+        let across = corners[0][i % 3];
+        corners.iter_mut().for_each(|corner| corner[i % 3] = across);
+        positions.extend(corners);
+    }
+    let rays = (0..1000).map(|i| {
+        let target = Vec3::from_array(positions[i % positions.len()]);
+        let direction = Vec3::new(whole(7), whole(7), whole(7));
+        Ray::new(target - direction * (1 + i % 13) as f32, direction)
+    });
+    let rays: Vec<_> = rays.collect();
+    let seen = compare(&soup(positions), &rays);
+    assert!(all_seen(&seen, &["Inside", "Edge", "Vertex", "ties", "grazed"]), "{seen:?}");
+}
+
 #[test]
 fn every_magnitude_of_f32() {
     let (geometry, rays) = case(2, Hostile::any);

@@ -138,28 +138,43 @@ fn near_ties_are_measured() {
     }
 }
 
-/// Two triangles that share an edge along y at x = 0, z = 0, and a ray that passes it at `x` along -z.
+/// Two triangles that share an edge along y at x = 0, z = 0, and a ray that passes it at `x` along -z. Far to both sides
+/// are more, so that the two are not in one box; and one of them has -0 for 0.
 fn roof(x: f32, left: Option<Vec3>, right: Vec3) -> (Oracle, Ray) {
+    (Oracle::build(soup(roof_corners(left, right))), towards_roof(x))
+}
+
+fn towards_roof(x: f32) -> Ray {
+    Ray::new(Vec3::new(x, 0.0, 4.0), -Vec3::Z)
+}
+
+fn roof_corners(left: Option<Vec3>, right: Vec3) -> Vec<[f32; 3]> {
     let [a, b] = [Vec3::new(0.0, -4.0, 0.0), Vec3::new(0.0, 4.0, 0.0)];
     let mut corners = vec![a, right, b];
-    corners.extend(left.into_iter().flat_map(|left| [a, b, left]));
-    let oracle = Oracle::build(soup(corners.iter().map(|p| p.to_array()).collect()));
-    (oracle, Ray::new(Vec3::new(x, 0.0, 4.0), -Vec3::Z))
+    let negative = |p: Vec3| Vec3::new(-p.x, p.y, -p.z);
+    corners.extend(left.into_iter().flat_map(|left| [negative(a), negative(b), left]));
+    for i in 0..40 {
+        let far = Vec3::new(if i % 2 == 0 { 100.0 } else { -100.0 }, i as f32, 0.0);
+        corners.extend([far, far + Vec3::X, far + Vec3::Y]);
+    }
+    corners.iter().map(|p| p.to_array()).collect()
 }
+
+const LEFT: Vec3 = Vec3::new(-3.0, 0.0, 0.0);
+const RIGHT: Vec3 = Vec3::new(3.0, 0.0, 0.0);
 
 #[test]
 fn distances_from_edges_are_in_ulps() {
     // The edge's ends are at most 4 away on any axis: an ulp is 4 u.
-    let (right, left) = (Vec3::new(3.0, 0.0, 0.0), Vec3::new(-3.0, 0.0, 0.0));
     for ulps in [0.0, 0.5, 1.0, 5.0, 7.0, 100.0] {
         let x = ulps * 4.0 * U;
         // At the rim of a surface rounding decides; farther in or out nothing may.
-        let (oracle, ray) = roof(x, None, right);
+        let (oracle, ray) = roof(x, None, RIGHT);
         let missed = judge(&oracle, &ray, PrimitiveId::MISS);
         let edge = missed.overlooked.expect("it is met");
         assert!((edge.edge.ulps - f64::from(ulps)).abs() < 1e-5 && edge.silhouette == (ulps < 6.0));
         assert_eq!((missed.class, missed.is_lawful()), (Class::Missed, ulps < 6.0));
-        let (oracle, ray) = roof(-x, None, right);
+        let (oracle, ray) = roof(-x, None, RIGHT);
         if ulps > 0.0 {
             let false_hit = judge(&oracle, &ray, triangle(0));
             let outside = false_hit.outside.expect("it passes by");
@@ -167,7 +182,7 @@ fn distances_from_edges_are_in_ulps() {
             assert_eq!((false_hit.class, false_hit.is_lawful()), (Class::FalseHit, ulps < 6.0));
         }
         // Where the surface goes on, the neighbour will do, but a miss will not.
-        let (oracle, ray) = roof(x, Some(left), right);
+        let (oracle, ray) = roof(x, Some(LEFT), RIGHT);
         let neighbour = judge(&oracle, &ray, triangle(1));
         let expected = match ulps {
             0.0 => Class::Tie,
@@ -180,10 +195,55 @@ fn distances_from_edges_are_in_ulps() {
         assert!(!leak.overlooked.expect("both are met").silhouette);
         // Where it turns back, a miss will do again.
         let back = Vec3::new(3.0, 1.0, -2.0);
-        let (oracle, ray) = roof(x, Some(back), right);
+        let (oracle, ray) = roof(x, Some(back), RIGHT);
         let silhouette = judge(&oracle, &ray, PrimitiveId::MISS);
         assert_eq!(silhouette.is_lawful(), ulps < 6.0, "{silhouette:?}");
     }
+}
+
+/// Under an instance there are two more roundings of the direction, and those of the origin.
+#[test]
+fn bands_under_an_instance_are_wider() {
+    for (ulps, in_band) in [(9.5, true), (10.5, false)] {
+        let ray = towards_roof(ulps * 4.0 * U);
+        let mesh = soup(roof_corners(None, RIGHT)).meshes[0].clone();
+        let oracle = Oracle::build(Arc::new(placed(mesh, 1.0, 0.0)));
+        let verdict = oracle.closest(&ray, &AcceptAll);
+        let [(id, _)] = verdict.nearest[1..] else { panic!("the second one is where the mesh is") };
+        assert_eq!(id.instance, 1);
+        let edge = judge(&oracle, &ray, PrimitiveId::MISS).overlooked.expect("it is met").edge;
+        assert!((edge.band - 10.0).abs() < 0.1 && edge.is_in_band() == in_band, "{edge:?}");
+    }
+}
+
+/// Refuses the left half of a roof.
+struct RightOnly;
+
+impl HitFilter for RightOnly {
+    fn accept(&self, _: &Ray, candidate: &Hit) -> bool {
+        candidate.id.primitive != 1
+    }
+}
+
+#[test]
+fn what_a_filter_refuses_closes_no_surface() {
+    let ray = towards_roof(4.0 * U);
+    let mesh = soup(roof_corners(Some(LEFT), RIGHT)).meshes[0].clone();
+    let oracle = Oracle::build(world(vec![TriangleMesh { filtered: true, ..mesh }]));
+    assert!(!oracle.judge(&ray, &AcceptAll, PrimitiveId::MISS).is_lawful());
+    assert!(oracle.judge(&ray, &RightOnly, PrimitiveId::MISS).is_lawful());
+}
+
+#[test]
+fn one_excuse_does_not_excuse_another() {
+    let mut corners = roof_corners(None, RIGHT);
+    corners.extend([[-9.0, -9.0, -1.0], [9.0, -9.0, -1.0], [0.0, 9.0, -1.0]]);
+    let wall = triangle(corners.len() as u32 / 3 - 1);
+    let oracle = Oracle::build(soup(corners));
+    let ray = towards_roof(4.0 * U);
+    assert!(judge(&oracle, &ray, wall).is_lawful());
+    let missed = judge(&oracle, &ray, PrimitiveId::MISS);
+    assert!(!missed.is_lawful() && missed.overlooked.map(|o| o.id) == Some(wall));
 }
 
 #[test]
@@ -200,6 +260,8 @@ fn what_has_no_area_or_is_seen_edge_on_is_left_open() {
         let judgement = judge(&oracle, &ray, grazed);
         assert!(judgement.class == Class::Grazed && judgement.is_lawful());
     }
+    let from_behind = oracle.closest(&Ray::new(Vec3::new(0.0, 0.0, 16.0), -Vec3::Z), &AcceptAll);
+    assert!(from_behind.grazed.is_empty() && from_behind.nearest.len() == 1);
     let beside = Ray::new(Vec3::new(0.125, 0.125, 0.0), Vec3::Z);
     assert!(oracle.closest(&beside, &AcceptAll).grazed.is_empty());
     for passed in [0, 1] {
