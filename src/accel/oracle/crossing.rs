@@ -134,7 +134,7 @@ fn approximate_parameter(sides: &[Approximate; 3], numerator: Approximate) -> Op
     // False for NaN, which 0 / 0 gives. Where it is true little was lost to cancellation, so that t is about as large
     // as a distance by a direction, 2^-426 to 2^407: no under- or overflow.
     let is_good = denominator > 2.0 * error && off <= t.abs() * GOOD;
-    is_good.then(|| [t - off, t + off])
+    is_good.then_some([t - off, t + off])
 }
 
 /// Relative error up to which bounds of a parameter are good enough: 1/4096 of a unit in the last place of `f32`.

@@ -116,7 +116,8 @@ impl Oracle {
             _ => {}
         }
         if answer == PrimitiveId::MISS {
-            let overlooked = self.overlooked(&self.surroundings(ray, filter), answer, f32::INFINITY);
+            let overlooked =
+                self.overlooked(&self.surroundings(ray, filter), answer, f32::INFINITY);
             let class = if overlooked.is_some() { Class::Missed } else { Class::End };
             return Judgement { overlooked, ..Judgement::of(class) };
         }
@@ -138,7 +139,8 @@ impl Oracle {
         let t = resolve(&self.geometry, ray, answer).t;
         let is_within = t > ray.t_min && t < ray.t_max;
         let overlooked = self.overlooked(&surroundings, answer, t);
-        let judgement = |class| Judgement { overlooked, in_order: is_within, ..Judgement::of(class) };
+        let judgement =
+            |class| Judgement { overlooked, in_order: is_within, ..Judgement::of(class) };
         let Some(crossing) = self.cross(ray, answer) else {
             let class = if surroundings.are_connected(answer, verdict) {
                 Class::Neighbour

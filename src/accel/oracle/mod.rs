@@ -77,7 +77,8 @@ impl Oracle {
     /// The triangles that `ray` meets first among those that `filter` accepts, exactly. A ray that is not finite
     /// (`t_max` excepted) or has no direction meets nothing.
     pub fn closest<F: HitFilter>(&self, ray: &Ray, filter: &F) -> Verdict {
-        let mut nearest = Nearest { oracle: self, ray, filter, met: Vec::new(), grazed: Vec::new() };
+        let mut nearest =
+            Nearest { oracle: self, ray, filter, met: Vec::new(), grazed: Vec::new() };
         if is_regular(ray) {
             let line = Line::new(ray.origin.as_dvec3(), ray.direction.as_dvec3());
             let start = f64::from(ray.t_min);
@@ -164,9 +165,8 @@ impl<F: HitFilter> Nearest<'_, F> {
             Some((_, first)) if crossing.place.is_proper() => crossing.compare(first),
             _ => Ordering::Less,
         };
-        let counts = order.is_le()
-            && crossing.is_within()
-            && self.oracle.accepts(self.ray, self.filter, id);
+        let counts =
+            order.is_le() && crossing.is_within() && self.oracle.accepts(self.ray, self.filter, id);
         if counts && !crossing.place.is_proper() {
             self.grazed.push((id, crossing));
         } else if counts {
@@ -181,7 +181,8 @@ impl<F: HitFilter> Nearest<'_, F> {
     fn verdict(self) -> Verdict {
         let t = self.met.first().map_or([f64::INFINITY; 2], |(_, crossing)| crossing.t);
         let mut nearest: Vec<_> = self.met.iter().map(|(id, c)| (*id, c.place)).collect();
-        let before = |(id, crossing): &(PrimitiveId, Crossing)| (crossing.t[0] <= t[1]).then_some(*id);
+        let before =
+            |(id, crossing): &(PrimitiveId, Crossing)| (crossing.t[0] <= t[1]).then_some(*id);
         let mut grazed: Vec<_> = self.grazed.iter().filter_map(before).collect();
         nearest.sort_unstable_by_key(|met| met.0);
         grazed.sort_unstable();

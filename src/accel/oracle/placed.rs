@@ -69,7 +69,8 @@ impl Placement {
         const PAD: f64 = 16.0 * f64::EPSILON;
         let DAffine3 { matrix3, translation } = self.world_from_object;
         let (mut low, mut high, mut size) = (translation, translation, translation.abs());
-        for (k, column) in [matrix3.x_axis, matrix3.y_axis, matrix3.z_axis].into_iter().enumerate() {
+        for (k, column) in [matrix3.x_axis, matrix3.y_axis, matrix3.z_axis].into_iter().enumerate()
+        {
             let (p, q) = (column * bounds.low[k], column * bounds.high[k]);
             low += p.min(q);
             high += p.max(q);

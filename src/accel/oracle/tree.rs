@@ -17,9 +17,7 @@ impl Bounds {
     /// The smallest box around `points`.
     pub(super) fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
         let nothing = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        points
-            .into_iter()
-            .fold(nothing, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
+        points.into_iter().fold(nothing, |b, p| Self { low: b.low.min(p), high: b.high.max(p) })
     }
 
     /// As much larger on every side.

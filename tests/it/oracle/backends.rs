@@ -51,6 +51,7 @@ impl Table {
         self.counts[class as usize]
     }
 
+    #[expect(clippy::print_stdout, reason = "the table is what the run is for")]
     fn print(&self, title: &str) {
         let named = Class::ALL.iter().filter(|(_, class)| self.count(*class) > 0);
         let counts: Vec<_> =

@@ -105,27 +105,25 @@ fn neighbours_of_small_whole_numbers() {
     assert!(all_seen(&seen, &EVERYTHING), "{seen:?}");
 }
 
-/// Triangles that lie across an axis, so that their boxes have no thickness, and rays exactly through a corner along
-/// thirds, fifths and sevenths: a box test that rounds to nearest leaves some out.
+/// A triangle that lies across an axis, so that its box has no thickness, and rays exactly through its corners along
+/// whole numbers whose reciprocals are rounded: a box test that trusts them leaves some out.
 #[test]
 fn corners_of_flat_boxes() {
     let mut hostile = Hostile(CounterRng::new(7));
-    let mut whole = |n: u32| (hostile.below(2 * n + 1) as f32) - n as f32;
-    let mut positions = Vec::new();
-    for i in 0..60 {
+    let mut whole = |n: u32| hostile.below(2 * n + 1) as f32 - n as f32;
+    let mut corners_met = 0;
+    for i in 0..200 {
         let mut corners = [0; 3].map(|_| [0; 3].map(|_| whole(7)));
         let across = corners[0][i % 3];
         corners.iter_mut().for_each(|corner| corner[i % 3] = across);
-        positions.extend(corners);
+        let rays = (0..6).map(|k| {
+            let direction = Vec3::new(whole(200), whole(200), whole(200));
+            Ray::new(Vec3::from_array(corners[k % 3]) - direction * (k + 1) as f32, direction)
+        });
+        let rays: Vec<_> = rays.collect();
+        corners_met += compare(&soup(corners.to_vec()), &rays).get("Vertex").copied().unwrap_or(0);
     }
-    let rays = (0..1000).map(|i| {
-        let target = Vec3::from_array(positions[i % positions.len()]);
-        let direction = Vec3::new(whole(7), whole(7), whole(7));
-        Ray::new(target - direction * (1 + i % 13) as f32, direction)
-    });
-    let rays: Vec<_> = rays.collect();
-    let seen = compare(&soup(positions), &rays);
-    assert!(all_seen(&seen, &["Inside", "Edge", "Vertex", "ties", "grazed"]), "{seen:?}");
+    assert!(corners_met > 800, "{corners_met}");
 }
 
 #[test]
@@ -164,7 +162,8 @@ fn instances_are_where_world_vertices_says() {
         let mut aimed = rays[..100].to_vec();
         for ray in &mut aimed {
             let [a, b, _] = geometry.world_vertices(ids[hostile.below(60) as usize]).0;
-            ray.origin = (b * 3.0 - a * 2.0).as_vec3() + hostile.point(Hostile::small) * scale as f32;
+            ray.origin =
+                (b * 3.0 - a * 2.0).as_vec3() + hostile.point(Hostile::small) * scale as f32;
             ray.direction = ((a + b) * 0.5).as_vec3() - ray.origin;
             (ray.t_min, ray.t_max) = (0.0, f32::INFINITY);
         }
@@ -189,7 +188,9 @@ fn neither_the_order_of_corners_nor_powers_of_two_matter() {
             assert_eq!((&verdict.nearest, &verdict.grazed), (&truth.nearest, &truth.grazed));
         }
     }
-    for (larger, faster) in [(1.0, 2.0_f32.powi(90)), (2.0_f32.powi(100), 0.25), (2.0_f32.powi(-90), 1.0)] {
+    for (larger, faster) in
+        [(1.0, 2.0_f32.powi(90)), (2.0_f32.powi(100), 0.25), (2.0_f32.powi(-90), 1.0)]
+    {
         let positions = mesh.positions.iter().map(|p| p.map(|x| x * larger)).collect();
         let scaled = TriangleMesh::new(positions, mesh.triangles.to_vec(), false);
         let scaled = Oracle::build(super::world(vec![scaled]));
@@ -197,8 +198,8 @@ fn neither_the_order_of_corners_nor_powers_of_two_matter() {
             let Ray { t_min, t_max, .. } = *ray;
             let ray = Ray::new(ray.origin * larger, ray.direction * faster);
             let factor = larger / faster;
-            let verdict =
-                scaled.closest(&Ray { t_min: t_min * factor, t_max: t_max * factor, ..ray }, &AcceptAll);
+            let verdict = scaled
+                .closest(&Ray { t_min: t_min * factor, t_max: t_max * factor, ..ray }, &AcceptAll);
             assert_eq!((&verdict.nearest, &verdict.grazed), (&truth.nearest, &truth.grazed));
             assert_eq!(verdict.t, truth.t.map(|t| t * f64::from(factor)));
         }

@@ -23,10 +23,8 @@ fn judge(oracle: &Oracle, ray: &Ray, answer: PrimitiveId) -> Judgement {
 
 /// Two spheres, one in the other, and rays from inside both that pass no edge in the band.
 fn spheres() -> (Arc<Geometry>, Oracle, Vec<Ray>) {
-    let geometry = world(vec![
-        sphere(Vec3::ZERO, 1.0, 12, false),
-        sphere(Vec3::ZERO, 2.0, 12, false),
-    ]);
+    let geometry =
+        world(vec![sphere(Vec3::ZERO, 1.0, 12, false), sphere(Vec3::ZERO, 2.0, 12, false)]);
     let mut rng = CounterRng::new(0);
     let mut direction = || warp::sphere([rng.unit(), rng.unit()]);
     let rays = (0..500).map(|_| Ray::new(direction() * 0.3, direction())).collect();

@@ -40,7 +40,8 @@ pub(super) fn all() -> Vec<Scene> {
     add("instances", Arc::new(turned));
     // Squeezed two hundredfold, and placed so far away that `f32` has little left for it.
     let squeezed = DMat3::from_diagonal(DVec3::new(1.0, 200.0, 1.0));
-    for (name, matrix3, x) in [("squeezed", squeezed, 0.0), ("placed far away", DMat3::IDENTITY, 1e5)]
+    for (name, matrix3, x) in
+        [("squeezed", squeezed, 0.0), ("placed far away", DMat3::IDENTITY, 1e5)]
     {
         let map = DAffine3 { matrix3, translation: DVec3::new(x, 0.3 * x, 0.1) };
         let geometry = Geometry {
