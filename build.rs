@@ -1,7 +1,7 @@
 //! Finds Embree, compiles the C shim and generates the bindings; does nothing without feature `embree`.
 //!
 //! Order: `EMBREE_DIR`, then the system's include folders; Embree 4 before Embree 3. The version's
-//! differences stay in `ffi/`; Rust sees one API and the number `EMBREE_MAJOR`.
+//! differences stay in `ffi/`; Rust sees one API.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -51,7 +51,7 @@ mod embree {
             .clang_arg(format!("-DGLINT_EMBREE_MAJOR={major}"))
             .allowlist_function("rtc(New|Release|Commit)(Device|Scene|Geometry)")
             .allowlist_function(
-                "rtcSetShared(GeometryBuffer)|rtcSetSceneFlags|rtcAttachGeometryByID",
+                "rtcSetShared(GeometryBuffer)|rtcSetScene(Flags|BuildQuality)|rtcAttachGeometryByID",
             )
             .allowlist_function("rtcSetGeometry(InstancedScene|Transform)")
             .allowlist_function(

@@ -11,7 +11,8 @@
 #error "GLINT_EMBREE_MAJOR must be 3 or 4"
 #endif
 
-enum { GLINT_EMBREE_VERSION = GLINT_EMBREE_MAJOR };
+/* 3 or 4. */
+int glint_embree_major(void);
 
 /* Answers whether the candidate counts. `user` is what the query was given; `ray` is RTCRay.id;
  * `t` is Embree's own distance. Must not unwind. */
@@ -28,5 +29,18 @@ void glint_occluded(RTCScene scene, struct RTCRay *rays, unsigned n, GlintAccept
 
 /* Has the geometry ask the `accept` of whatever query meets it. */
 void glint_filter_geometry(RTCGeometry geometry);
+
+/* For benchmarks: Embree's calls for several rays at once, on n rays in the layout of the call, without
+ * filters. `coherent` is the hint of that name. The last packet may be partly filled. */
+void glint_closest_8(RTCScene scene, struct RTCRayHit8 *packets, unsigned n, int coherent);
+void glint_closest_16(RTCScene scene, struct RTCRayHit16 *packets, unsigned n, int coherent);
+void glint_occluded_8(RTCScene scene, struct RTCRay8 *packets, unsigned n, int coherent);
+void glint_occluded_16(RTCScene scene, struct RTCRay16 *packets, unsigned n, int coherent);
+
+/* Streams of `length` rays, the last one shorter. Embree 4 has none, and traces ray by ray here. */
+void glint_closest_stream(RTCScene scene, struct RTCRayHit *rays, unsigned n, unsigned length,
+                          int coherent);
+void glint_occluded_stream(RTCScene scene, struct RTCRay *rays, unsigned n, unsigned length,
+                           int coherent);
 
 #endif

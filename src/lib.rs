@@ -33,6 +33,7 @@ pub mod render;
 
 // Uses.
 pub mod generate;
+pub mod study;
 
 // Front end.
 pub mod cli;

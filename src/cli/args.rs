@@ -1,18 +1,21 @@
 //! What can be said on the command line, each option in the type that it means. Parsing opens no file.
 
 use super::values::{
-    Env, count, crop, direction, env, field_of_view, filter, finite, named, override_material,
-    point, replay, rgb_fractions, size, threads,
+    Env, count, crop, direction, duration, env, field_of_view, filter, finite, named,
+    override_material, point, replay, rgb_fractions, size, threads,
 };
 use crate::filter::Filter;
 use crate::generate::Kind;
 use crate::image::ToneMap;
 use crate::math::{DVec3, Rgb};
+use crate::os::Isa;
 use crate::render::Aov;
 use crate::sampling::SamplerKind;
 use crate::scene::{Effects, Material};
+use crate::study::bench::RayKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// A path tracer for large OBJ scenes on Embree.
 #[derive(Debug, Parser)]
@@ -28,6 +31,9 @@ pub(super) enum Command {
     /// Renders an OBJ model or a TOML scene to EXR, PNG or HDR.
     #[command(after_help = RENDER_EXAMPLES)]
     Render(Box<Render>),
+    /// Races Embree against the in-house BVH on your own scenes, and proves that they agree.
+    #[command(after_help = BENCH_EXAMPLES)]
+    Bench(Bench),
     /// Writes a procedural OBJ model of any size, to test and to time with.
     #[command(after_help = GENERATE_EXAMPLES)]
     Generate(Generate),
@@ -137,6 +143,63 @@ pub(super) struct Render {
     /// Trace one sample of one pixel and print what it met
     #[arg(long, value_name = "x,y,sample", value_parser = replay, help_heading = "Machine")]
     pub(super) replay: Option<([u32; 2], u64)>,
+}
+
+const BENCH_EXAMPLES: &str = "\
+Examples:
+  glint bench model.obj
+      builds, memory and rays per second of every backend, in about two minutes
+  glint bench city.obj scene.toml -o report.html
+      one page with bars for both scenes
+  glint bench model.obj --kinds primary,shadow --time 20s
+  glint bench model.obj --isa avx2 --threads 1 --repetitions 15 --json > avx2.json
+
+A contestant is timed only if all its answers are right: those that differ from Embree's robust mode are
+decided by arithmetic in double precision. Embree's fast modes may be wrong once in 10 000 rays.
+Exit code 3: answers of a contestant were wrong.";
+
+/// `glint bench`.
+#[derive(Debug, Args)]
+pub(super) struct Bench {
+    /// Models (.obj) or scene files (.toml); of materials nothing is read, so that cut-outs are solid
+    #[arg(required = true, value_name = "SCENE")]
+    pub(super) scenes: Vec<PathBuf>,
+
+    /// Write a page with tables and bars
+    #[arg(short, long, value_name = "FILE.html", help_heading = "Output")]
+    pub(super) output: Option<PathBuf>,
+    /// Print everything as JSON to standard output, and the tables to standard error
+    #[arg(long, help_heading = "Output")]
+    pub(super) json: bool,
+    /// Print nothing but errors, and the JSON if asked for
+    #[arg(short, long, help_heading = "Output")]
+    pub(super) quiet: bool,
+
+    /// Rays of each kind; k, M and G multiply it
+    #[arg(long, value_name = "N", default_value = "131072", value_parser = count, help_heading = "Race")]
+    pub(super) rays: u64,
+    /// Kinds of rays: primary, first-bounce, deep-bounce, shadow, ambient-occlusion, random [default: all]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named("kind of rays", &RayKind::ALL),
+          help_heading = "Race")]
+    pub(super) kinds: Vec<RayKind>,
+    /// Numbers of threads to race on, one after the other; 0 is one a core [default: 1,0]
+    #[arg(long, value_name = "N,...", value_delimiter = ',', value_parser = threads, help_heading = "Race")]
+    pub(super) threads: Vec<usize>,
+    /// Widest instructions for both sides: portable, avx2 or avx512 [default: all that there are]
+    #[arg(long, value_name = "NAME", value_parser = named("instruction set", &Isa::ALL), help_heading = "Race")]
+    pub(super) isa: Option<Isa>,
+    /// Time for each scene, building included; what there is time for is repeated
+    #[arg(long, value_name = "TIME", default_value = "2m", value_parser = duration, help_heading = "Race")]
+    pub(super) time: Duration,
+    /// Take every time exactly so often, however long that is
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000), help_heading = "Race")]
+    pub(super) repetitions: Option<u64>,
+    /// Race all of Embree's calls for several rays, not only the best two of a short trial
+    #[arg(long, help_heading = "Race")]
+    pub(super) all_calls: bool,
+    /// Which axis of the scene is up [default: y]
+    #[arg(long, value_enum, help_heading = "Race")]
+    pub(super) up: Option<Up>,
 }
 
 const GENERATE_EXAMPLES: &str = "\

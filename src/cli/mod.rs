@@ -4,6 +4,7 @@
 //! signal with nothing written.
 
 mod args;
+mod bench;
 mod generate;
 mod output;
 mod progress;
@@ -33,6 +34,7 @@ pub fn main() -> ExitCode {
     let args = args::Glint::parse();
     let code = match args.command {
         args::Command::Render(args) => render::run(&args),
+        args::Command::Bench(args) => bench::run(&args),
         args::Command::Generate(args) => generate::run(&args),
     };
     ExitCode::from(code.unwrap_or_else(|error| {

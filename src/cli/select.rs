@@ -134,18 +134,8 @@ pub(super) fn camera(
     };
     if camera.is_none() {
         // Said nothing, or not all: frame the whole scene, and let the options move that camera.
-        let vertical_fov = args.fov.unwrap_or(DEFAULT_FOV);
-        let bounds = [world.bounds.min, world.bounds.max].map(|p| p.as_dvec3());
         let aspect = f64::from(size[0]) / f64::from(size[1]);
-        let points = world.geometry.hull_points().map(|p| p.as_dvec3());
-        let view = frame_points(bounds, points, up, aspect, vertical_fov)?;
-        camera = Some(scene::Camera {
-            name: "automatic".into(),
-            from: view.from + world.origin,
-            to: view.to + world.origin,
-            up: view.up,
-            projection: Projection::Perspective { vertical_fov },
-        });
+        camera = Some(automatic(world, up, aspect, args.fov.unwrap_or(DEFAULT_FOV))?);
     }
     let mut camera = camera.ok_or_else(|| Error::Scene("there is no camera".into()))?;
     if let Some(from) = args.camera_from {
@@ -171,5 +161,27 @@ pub(super) fn camera(
     Ok((world.camera(&camera, size)?, camera))
 }
 
+/// The camera that frames the whole scene.
+///
+/// # Errors
+/// [`Error::Scene`] where there is nothing to frame.
+pub(super) fn automatic(
+    world: &World,
+    up: DVec3,
+    aspect: f64,
+    vertical_fov: f64,
+) -> Result<scene::Camera> {
+    let bounds = [world.bounds.min, world.bounds.max].map(|p| p.as_dvec3());
+    let points = world.geometry.hull_points().map(|p| p.as_dvec3());
+    let view = frame_points(bounds, points, up, aspect, vertical_fov)?;
+    Ok(scene::Camera {
+        name: "automatic".into(),
+        from: view.from + world.origin,
+        to: view.to + world.origin,
+        up: view.up,
+        projection: Projection::Perspective { vertical_fov },
+    })
+}
+
 /// Vertical field of view of automatic cameras, degrees.
-const DEFAULT_FOV: f64 = 35.0;
+pub(super) const DEFAULT_FOV: f64 = 35.0;

@@ -197,20 +197,27 @@ mod tests {
     use super::*;
     use schemars::generate::SchemaSettings;
 
+    use crate::study::bench;
+
     /// `GLINT_WRITE_SCHEMA=1` writes the file before it is compared.
-    #[test]
-    fn the_schema_in_the_repository_is_that_of_the_types() {
+    fn schema_is_that_of<T: schemars::JsonSchema>(command: &str) {
         let settings = SchemaSettings::draft2020_12().for_serialize();
         let settings = settings.with(|settings| settings.inline_subschemas = true);
-        let schema = settings.into_generator().into_root_schema_for::<Statistics>();
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/schemas/render.json");
+        let schema = settings.into_generator().into_root_schema_for::<T>();
+        let path = format!("{}/tests/schemas/{command}.json", env!("CARGO_MANIFEST_DIR"));
         if std::env::var_os("GLINT_WRITE_SCHEMA").is_some() {
             let text = serde_json::to_string_pretty(&schema).unwrap() + "\n";
-            std::fs::write(path, text).unwrap();
+            std::fs::write(&path, text).unwrap();
         }
-        let written = std::fs::read_to_string(path).unwrap_or_default();
+        let written = std::fs::read_to_string(&path).unwrap_or_default();
         let written: serde_json::Value = serde_json::from_str(&written).unwrap_or_default();
         let advice = "type: GLINT_WRITE_SCHEMA=1 cargo test --lib the_schema";
         assert_eq!(written, schema.to_value(), "{path} is out of date; {advice}");
+    }
+
+    #[test]
+    fn the_schemas_in_the_repository_are_those_of_the_types() {
+        schema_is_that_of::<Statistics>("render");
+        schema_is_that_of::<bench::Report>("bench");
     }
 }

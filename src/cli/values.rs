@@ -6,6 +6,7 @@ use crate::math::{DVec3, Rgb};
 use crate::scene::{ColorInput, Environment, Material, Surface};
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// `--env`.
 #[derive(Clone, Debug)]
@@ -138,4 +139,10 @@ pub(super) fn count(text: &str) -> Result<u64, String> {
     number
         .filter(|n| *n > 0)
         .ok_or_else(|| "expected a number above 0, as in 500000, 500k or 2M".into())
+}
+
+/// A length of time with its unit.
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
+    let parsed = humantime::parse_duration(text).ok().filter(|time| !time.is_zero());
+    parsed.ok_or_else(|| "expected a time above 0 with its unit, as in 90s, 2m or 1m30s".into())
 }

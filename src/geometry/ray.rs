@@ -43,7 +43,7 @@ impl Ray {
 }
 
 /// Which primitive: this triple is all that a backend decides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Zeroable)]
 pub struct PrimitiveId {
     /// Index into [`super::Geometry::instances`], or [`NONE`] for the root's own meshes.
     pub instance: u32,

@@ -1,10 +1,14 @@
-//! What only the operating system and the processor know: memory used, instruction sets.
+//! What only the operating system and the processor know: memory and time used, instruction sets.
 //!
 //! One of the three places where `unsafe` is allowed. Knows nothing of rendering.
 #![allow(unsafe_code)]
 
+mod arena;
+mod clock;
 mod isa;
 
+pub use arena::Arena;
+pub use clock::thread_seconds;
 pub use isa::{Isa, Kernel};
 
 /// The most memory that this process has had resident, in bytes; 0 where the system does not say.

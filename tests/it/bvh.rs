@@ -5,8 +5,9 @@
 use crate::accel::sphere;
 use glint::accel::bvh::Bvh;
 use glint::accel::{Accelerator, AcceptAll, BruteForce};
-use glint::geometry::{Geometry, Hit, Ray, TriangleMesh};
-use glint::math::Vec3;
+use glint::geometry::{Geometry, Hit, Instance, Object, Ray, TriangleMesh};
+use glint::math::{Affine, DAffine3, DMat3, DVec3, Vec3};
+use glint::os::Isa;
 use glint::sampling::{CounterRng, warp};
 use std::sync::Arc;
 
@@ -103,6 +104,57 @@ fn the_number_of_threads_changes_no_hit_and_no_byte() {
     let geometry = Arc::new(Geometry { meshes: vec![mesh], ..Geometry::default() });
     let [one, many] = [1, 4].map(|n| Bvh::build(geometry.clone(), n).expect("it builds"));
     assert_eq!(one.build_stats().bytes, many.build_stats().bytes);
+    assert_eq!(one.validate().expect("a whole tree"), many.validate().expect("a whole tree"));
     let rays = rays(1.5, 10_000);
     assert_eq!(closest(&one, &rays), closest(&many, &rays));
+}
+
+/// Whatever instructions compute it, whatever flies beside it, a ray hits the same; and is blocked if it hits.
+#[test]
+fn the_instruction_set_changes_no_hit() {
+    let object = Object { meshes: vec![sphere(Vec3::Z, 0.5, 30, false)] };
+    let place = |x: f64| {
+        let map = DAffine3 {
+            matrix3: DMat3::from_cols(DVec3::Y * 2.0, DVec3::Z, DVec3::X * 0.7),
+            translation: DVec3::new(x, 0.3, -0.2),
+        };
+        Instance::new(0, Affine::from_f64(&map))
+    };
+    let geometry = Arc::new(Geometry {
+        meshes: vec![sphere(Vec3::ZERO, 1.0, 40, false), sphere(Vec3::ONE, 1.0, 40, false)],
+        objects: vec![object],
+        instances: (0..40).map(|i| place(f64::from(i) * 0.3 - 6.0)).collect(),
+    });
+    let bvh = Bvh::build(geometry, 2).expect("it builds");
+    bvh.validate().expect("a whole tree");
+    let rays = rays(3.0, 20_000);
+    let single: Vec<_> = rays.iter().map(|&ray| closest(&bvh, &[ray])[0]).collect();
+    assert!(single.iter().filter(|hit| hit.is_hit()).count() > 5000);
+    for (name, isa) in Isa::ALL {
+        isa.limit();
+        assert_eq!(closest(&bvh, &rays), single, "{name}");
+        let mut blocked = vec![false; rays.len()];
+        bvh.occluded(&rays, &AcceptAll, &mut blocked);
+        assert!(blocked.iter().zip(&single).all(|(&b, hit)| b == hit.is_hit()), "{name}");
+    }
+}
+
+/// Rays that are none miss, and do not hang.
+#[test]
+fn what_is_no_ray_hits_nothing() {
+    let geometry = Arc::new(Geometry {
+        meshes: vec![sphere(Vec3::ZERO, 1.0, 10, false)],
+        ..Geometry::default()
+    });
+    let bvh = Bvh::build(geometry, 1).expect("it builds");
+    let (nan, inf) = (f32::NAN, f32::INFINITY);
+    let mut rays = vec![Ray::new(Vec3::ZERO, Vec3::ZERO)];
+    for bad in [nan, inf, -inf] {
+        rays.push(Ray::new(Vec3::new(bad, 0.0, 0.0), Vec3::X));
+        rays.push(Ray::new(Vec3::ZERO, Vec3::new(0.0, bad, 1.0)));
+    }
+    let from_to = |t_min, t_max| Ray { t_min, t_max, ..Ray::new(Vec3::ZERO, Vec3::X) };
+    rays.extend([from_to(2.0, 0.0), from_to(0.0, nan), from_to(nan, inf), from_to(0.0, 0.0)]);
+    assert!(closest(&bvh, &rays).iter().all(|hit| !hit.is_hit()));
+    assert!(closest(&bvh, &[from_to(0.0, inf), from_to(-0.0, 1e30)]).iter().all(Hit::is_hit));
 }

@@ -5,6 +5,7 @@
 mod accel;
 mod allocation;
 mod backends;
+mod bench;
 mod bsdf;
 mod bvh;
 mod camera;

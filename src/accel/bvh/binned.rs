@@ -34,12 +34,9 @@ pub(super) enum Kind {
 const BINS: usize = 16;
 /// From this depth on primitives are halved, whatever it costs: no scene makes a tree deeper than
 /// this plus the logarithm of what is left.
-const HALVE_FROM: u32 = 48;
+pub(super) const HALVE_FROM: u32 = 48;
 /// Ranges smaller than this are built by one thread.
 const PARALLEL: usize = 4096;
-/// Cost of a leaf against that of a step: fixed, and for each primitive (a block of four is tested at once).
-const LEAF_COST: [f32; 2] = [0.9, 0.12];
-
 /// Builds over `boxes` with leaves of at most `leaf_size`. Returns the nodes, root first (none without
 /// primitives; some places stay unused), and the primitives' ids in the order of the leaves. There are fewer
 /// than 2^30 primitives.
@@ -51,17 +48,6 @@ pub(super) fn build(mut boxes: Vec<PrimitiveBox>, leaf_size: usize) -> (Vec<Bina
     let mut nodes = vec![unused; 2 * boxes.len() - 1];
     subtree(&mut boxes, &mut nodes, Place { first: 0, node: 0, depth: 0 }, leaf_size);
     (nodes, boxes.iter().map(|b| b.id).collect())
-}
-
-/// The leaves' ranges of primitives, in their order: leaf number i is the i-th.
-pub(super) fn leaves(nodes: &[BinaryNode]) -> Vec<(u32, u32)> {
-    let range = |node: &BinaryNode| match node.kind {
-        Kind::Leaf { start, end } if start < end => Some((start, end)),
-        _ => None,
-    };
-    let mut leaves: Vec<_> = nodes.iter().filter_map(range).collect();
-    leaves.sort_unstable();
-    leaves
 }
 
 /// Where a subtree lies: its first primitive and its root in the whole, and how deep it is.
@@ -99,26 +85,22 @@ fn subtree(boxes: &mut [PrimitiveBox], nodes: &mut [BinaryNode], place: Place, l
     }
 }
 
-/// Reorders the primitives and says how many go to the left; `None` where a leaf is cheaper.
+/// Reorders the primitives and says how many go to the left; `None` where they fit a leaf.
 fn split(boxes: &mut [PrimitiveBox], bounds: &Aabb, depth: u32, leaf_size: usize) -> Option<usize> {
     let n = boxes.len();
-    if n == 1 {
+    if n <= leaf_size {
         return None;
     }
-    let halve = || (n > leaf_size).then_some(n / 2);
+    let halves = Some(n / 2);
     if depth >= HALVE_FROM {
-        return halve();
+        return halves;
     }
-    let Some(best) = best_split(boxes, bounds) else {
+    let Some(best) = best_split(boxes, bounds, leaf_size) else {
         // All centres in one point (or not even numbers): no plane tells them apart.
-        return halve();
+        return halves;
     };
-    let leaf_cost = LEAF_COST[0] + LEAF_COST[1] * n as f32;
-    if n <= leaf_size && leaf_cost <= best.cost {
-        return None;
-    }
     let middle = partition(boxes, |b| best.bins.of(b.center2(), best.axis) < best.bin);
-    (0 < middle && middle < n).then_some(middle).or_else(halve)
+    (0 < middle && middle < n).then_some(middle).or(halves)
 }
 
 impl PrimitiveBox {
@@ -161,7 +143,7 @@ struct Split {
 }
 
 /// The cheapest plane between bins, in units of one step.
-fn best_split(boxes: &[PrimitiveBox], bounds: &Aabb) -> Option<Split> {
+fn best_split(boxes: &[PrimitiveBox], bounds: &Aabb, leaf_size: usize) -> Option<Split> {
     let centers = boxes.iter().fold(Aabb::EMPTY, |all, b| all.with_point(b.center2()));
     let bins = Bins::new(&centers);
     let mut counts = [[0_u32; BINS]; 3];
@@ -174,8 +156,9 @@ fn best_split(boxes: &[PrimitiveBox], bounds: &Aabb) -> Option<Split> {
             unions[axis][bin] = unions[axis][bin].union(b.bounds);
         }
     }
-    // cost = 1 + sum over sides of area / area of the node * cost of a leaf with its primitives.
-    let leaf = |bounds: &Aabb, n: u32| half_area(bounds) * (LEAF_COST[0] + LEAF_COST[1] * n as f32);
+    // cost = 1 + sum over sides of area / area of the node * leaves that its primitives fill: a leaf costs the
+    // same however full it is.
+    let leaf = |bounds: &Aabb, n: u32| half_area(bounds) * n.div_ceil(leaf_size as u32) as f32;
     let inverse_area = 1.0 / half_area(bounds).max(f32::MIN_POSITIVE);
     let mut best: Option<Split> = None;
     for axis in (0..3).filter(|&axis| bins.scale[axis] > 0.0) {

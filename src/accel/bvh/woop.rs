@@ -1,80 +1,72 @@
 //! The watertight edge test of a ray and four triangles.
 //!
 //! Source: S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. The ray is sheared
-//! onto the z axis; then a triangle is hit where the origin is inside its projection. Each edge function is
-//! computed from its two vertices alone, with the same operations for both triangles at an edge (and opposite
-//! signs), so no ray passes between them. Without fused multiply-add, whose single rounding would break that.
+//! onto the z axis; then a triangle is hit where the origin is inside its projection. A corner's projection depends on
+//! that corner alone, and an edge function has the same bits for both triangles at an edge, but for the sign. Rounding
+//! is monotonic, so the sign of the difference of two rounded products is right or the difference is 0 (without fused
+//! multiply-add, which would break that); and 0 counts as inside: no ray passes between two triangles.
+//! Their second test, in double precision, is needed only where products leave the range of `f32`.
 
-use super::blocks::{Block, SIZE};
+use super::block::{Block, SIZE};
 use crate::math::Vec3;
+use bytemuck::{Pod, Zeroable};
 
 /// What is the same for all triangles.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub(super) struct Shear {
-    origin: [f32; 3],
-    /// Axes: the last is the one along which the ray runs most.
-    axes: [usize; 3],
+    /// Along the axes below.
+    pub(super) origin: [f32; 3],
     /// Shear along the first two axes.
-    shear: [f32; 2],
+    pub(super) shear: [f32; 2],
+    /// Axes: the last is the one along which the ray runs most.
+    pub(super) axes: [u32; 3],
 }
+
+/// Edge functions whose sum is outside of this range may have lost their signs.
+pub(super) const TRUSTED: std::ops::RangeInclusive<f32> = 1e-24..=1e36;
 
 impl Shear {
     /// For a ray of non-zero direction.
     #[inline(always)]
     pub(super) fn new(origin: Vec3, direction: Vec3) -> Self {
         let size = direction.abs();
-        let z = match (size.x >= size.y, size.x >= size.z, size.y >= size.z) {
-            (true, true, _) => 0,
-            (_, _, true) => 1,
-            _ => 2,
-        };
+        let y = u32::from(size.y > size.x);
+        let z = if size.z > size.x.max(size.y) { 2 } else { y };
         // Which of the other two is first turns all signs over, which the test does not see.
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let shear = [direction[axes[0]] / direction[z], direction[axes[1]] / direction[z]];
-        Self { origin: origin.to_array(), axes, shear }
+        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z as usize];
+        let along = |values: Vec3, i: usize| values.to_array()[axes[i] as usize];
+        let depth = along(direction, 2);
+        Self {
+            origin: [along(origin, 0), along(origin, 1), along(origin, 2)],
+            shear: [along(direction, 0) / depth, along(direction, 1) / depth],
+            axes,
+        }
     }
 
-    /// Bit i: whether the ray's line meets triangle i of the block, edges included.
+    /// The corners of the block along axis `i` of the shear.
     #[inline(always)]
-    pub(super) fn inside(&self, block: &Block) -> u32 {
+    pub(super) fn along<'a>(&self, corner: &'a [[f32; SIZE]; 3], i: usize) -> &'a [f32; SIZE] {
+        &corner[self.axes[i].min(2) as usize]
+    }
+
+    /// Whether the ray's line meets the triangle in that lane, whatever its size: with exact products.
+    #[cold]
+    pub(super) fn is_inside(&self, block: &Block, lane: usize) -> bool {
         let [a, b, c] = &block.corners;
-        let (a, b, c) = (self.project(a), self.project(b), self.project(c));
-        let mut inside = 0;
-        for i in 0..SIZE {
-            let (a, b, c) = ([a[0][i], a[1][i]], [b[0][i], b[1][i]], [c[0][i], c[1][i]]);
-            let edges = [edge(c, b), edge(a, c), edge(b, a)];
-            inside |= u32::from(is_inside(edges)) << i;
-        }
-        inside
+        let project = |corner: &[[f32; SIZE]; 3]| {
+            let depth = self.along(corner, 2)[lane] - self.origin[2];
+            let flat = |i: usize| {
+                f64::from((self.along(corner, i)[lane] - self.origin[i]) - self.shear[i] * depth)
+            };
+            [flat(0), flat(1)]
+        };
+        let (a, b, c) = (project(a), project(b), project(c));
+        // Products of two `f32` are exact in `f64`, so only the last subtraction rounds.
+        let edge = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+        let is_front = u >= 0.0 && v >= 0.0 && w >= 0.0;
+        let is_back = u <= 0.0 && v <= 0.0 && w <= 0.0;
+        (is_front || is_back) && u + v + w != 0.0
     }
-
-    /// Corners relative to the origin, sheared: x and y.
-    #[inline(always)]
-    fn project(&self, corner: &[[f32; SIZE]; 3]) -> [[f32; SIZE]; 2] {
-        let z = self.axes[2];
-        let mut projected = [[0.0; SIZE]; 2];
-        for (k, projected) in projected.iter_mut().enumerate() {
-            let axis = self.axes[k];
-            for (i, value) in projected.iter_mut().enumerate() {
-                let depth = corner[z][i] - self.origin[z];
-                *value = (corner[axis][i] - self.origin[axis]) - self.shear[k] * depth;
-            }
-        }
-        projected
-    }
-}
-
-/// The edge function of two projected corners. Products of two `f32` are exact in `f64`, so only the last
-/// subtraction rounds, and the sign is right.
-#[inline(always)]
-fn edge(p: [f32; 2], q: [f32; 2]) -> f64 {
-    f64::from(p[0]) * f64::from(q[1]) - f64::from(p[1]) * f64::from(q[0])
-}
-
-/// Whether all edge functions have one sign, and not all are 0. False for NaN.
-#[inline(always)]
-fn is_inside([u, v, w]: [f64; 3]) -> bool {
-    let is_front = (u >= 0.0) & (v >= 0.0) & (w >= 0.0);
-    let is_back = (u <= 0.0) & (v <= 0.0) & (w <= 0.0);
-    (is_front | is_back) & (u + v + w != 0.0)
 }

@@ -2,6 +2,7 @@
 
 use super::sys;
 use crate::error::{Error, Result};
+use crate::os::Isa;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicIsize, Ordering};
@@ -26,9 +27,16 @@ unsafe impl Send for Device {}
 unsafe impl Sync for Device {}
 
 impl Device {
-    /// A device that builds with at most `threads` threads (0: all).
-    pub(super) fn new(threads: usize) -> Result<Self> {
-        let config = CString::new(format!("threads={threads}")).unwrap_or_default();
+    /// A device that builds with at most `threads` threads (0: all), and uses no wider instructions than
+    /// those of `isa`, if that is less than the machine has.
+    pub(super) fn new(threads: usize, isa: Isa) -> Result<Self> {
+        let limit = match isa {
+            _ if isa >= Isa::detect() => "",
+            Isa::Portable => ",isa=sse2",
+            Isa::Avx2 => ",isa=avx2",
+            Isa::Avx512 => ",isa=avx512",
+        };
+        let config = CString::new(format!("threads={threads}{limit}")).unwrap_or_default();
         // SAFETY: the string is valid for the call, which copies it.
         let handle = unsafe { sys::rtcNewDevice(config.as_ptr()) };
         if handle.is_null() {
@@ -61,12 +69,15 @@ impl Device {
         message.map_or(Ok(()), |message| Err(failure(message)))
     }
 
+    /// A property that exists in Embree 3 and 4.
+    fn property(&self, property: sys::RTCDeviceProperty) -> isize {
+        // SAFETY: the handle is valid.
+        unsafe { sys::rtcGetDeviceProperty(self.handle, property) }
+    }
+
     /// Version of the linked library.
     pub(super) fn version(&self) -> String {
-        let property = |p| {
-            // SAFETY: the handle is valid, and the properties exist in Embree 3 and 4.
-            unsafe { sys::rtcGetDeviceProperty(self.handle, p) }
-        };
+        let property = |p| self.property(p);
         format!(
             "{}.{}.{}",
             property(sys::RTCDeviceProperty::RTC_DEVICE_PROPERTY_VERSION_MAJOR),
@@ -127,8 +138,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn instruction_sets_can_be_limited() {
+        // Packets of 16 rays are native to AVX-512 alone, packets of 8 to AVX and more.
+        for (name, isa) in Isa::ALL {
+            let device = Device::new(1, isa).expect("embree is there");
+            let native = |p| device.property(p) != 0;
+            let isa = isa.min(Isa::detect());
+            let eight = native(sys::RTCDeviceProperty::RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED);
+            let sixteen =
+                native(sys::RTCDeviceProperty::RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED);
+            assert_eq!((eight, sixteen), (isa >= Isa::Avx2, isa >= Isa::Avx512), "{name}");
+        }
+    }
+
+    #[test]
     fn embrees_own_error_becomes_ours() {
-        let device = Device::new(1).expect("embree is there");
+        let device = Device::new(1, Isa::Avx512).expect("embree is there");
         device.check().expect("no error yet");
         // SAFETY: an unknown geometry type is refused with an error report and a null handle.
         let refused = unsafe { sys::rtcNewGeometry(device.handle(), sys::RTCGeometryType(9999)) };

@@ -1,12 +1,17 @@
 //! The production backend: Debian's Embree, robust mode, one ray a call inside a batch call.
 //!
+//! Beside it, for benchmarks, Embree as it comes ([`BareEmbree`]): other variants, other calls.
+//!
 //! Buffers are shared with Embree, not copied; this type holds a count on them, so they outlive Embree's
 //! scene. One of the three places where `unsafe` is allowed. Embree 3 and 4 differ only in `ffi/`.
 #![allow(unsafe_code)]
 
+mod bare;
 mod device;
+mod layout;
 mod query;
 mod scene;
+mod variant;
 #[allow(
     dead_code,
     missing_docs,
@@ -26,10 +31,22 @@ mod sys {
 use super::{Accelerator, BuildStats, HitFilter};
 use crate::error::Result;
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
+use crate::os::Isa;
 use device::Device;
 use scene::EmbreeScene;
 use std::sync::Arc;
 use std::time::Instant;
+
+pub use bare::{BareEmbree, BareRays};
+pub use variant::{EmbreeCall, EmbreeVariant, Hint};
+
+/// Version of the linked library, for example "3.13.5".
+///
+/// # Errors
+/// Embree's own, where it does not run on this machine.
+pub fn version() -> Result<String> {
+    Ok(Device::new(1, Isa::detect())?.version())
+}
 
 /// Embree over a geometry.
 pub struct EmbreeAccelerator {
@@ -47,8 +64,8 @@ impl EmbreeAccelerator {
     /// Embree's own, in its words: out of memory, unsupported CPU, invalid geometry.
     pub fn build(geometry: Arc<Geometry>, threads: usize) -> Result<Self> {
         let start = Instant::now();
-        let device = Device::new(threads)?;
-        let scene = EmbreeScene::build(&device, &geometry)?;
+        let device = Device::new(threads, Isa::detect())?;
+        let scene = EmbreeScene::build(&device, &geometry, EmbreeVariant::PRODUCTION, true)?;
         let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: device.bytes() };
         Ok(Self { scene, device, geometry, stats })
     }

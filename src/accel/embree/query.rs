@@ -35,7 +35,7 @@ unsafe extern "C" fn accept<F: HitFilter>(
 
 /// `ray` in Embree's layout; its id is its place in the chunk, by which the filter finds it again.
 #[inline]
-fn to_embree(ray: &Ray, place: usize) -> sys::RTCRay {
+pub(super) fn to_embree(ray: &Ray, place: usize) -> sys::RTCRay {
     sys::RTCRay {
         org_x: ray.origin.x,
         org_y: ray.origin.y,

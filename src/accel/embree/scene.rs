@@ -2,6 +2,7 @@
 
 use super::device::Device;
 use super::sys;
+use super::variant::EmbreeVariant;
 use crate::error::{Error, Result};
 use crate::geometry::{Geometry, NONE, Object, PrimitiveId, TriangleMesh};
 
@@ -18,18 +19,24 @@ unsafe impl Send for EmbreeScene {}
 unsafe impl Sync for EmbreeScene {}
 
 impl EmbreeScene {
-    /// Builds and commits the root scene and one scene an object.
-    pub(super) fn build(device: &Device, geometry: &Geometry) -> Result<Self> {
+    /// Builds and commits the root scene and one scene an object. Without `filters`, what is cut out is not
+    /// asked about.
+    pub(super) fn build(
+        device: &Device,
+        geometry: &Geometry,
+        variant: EmbreeVariant,
+        filters: bool,
+    ) -> Result<Self> {
         let objects = geometry
             .objects
             .iter()
             .map(|Object { meshes }| {
-                let scene = Self::new(device, meshes)?;
+                let scene = Self::new(device, meshes, variant, filters)?;
                 scene.commit(device)?;
                 Ok(scene)
             })
             .collect::<Result<Vec<_>>>()?;
-        let root = Self::new(device, &geometry.meshes)?;
+        let root = Self::new(device, &geometry.meshes, variant, filters)?;
         for (i, instance) in geometry.instances.iter().enumerate() {
             let object = &objects[instance.object as usize];
             root.attach_instance(device, object, &instance.world_from_object, i as u32)?;
@@ -52,7 +59,12 @@ impl EmbreeScene {
     }
 
     /// An uncommitted scene with `meshes` attached under their own indices.
-    fn new(device: &Device, meshes: &[TriangleMesh]) -> Result<Self> {
+    fn new(
+        device: &Device,
+        meshes: &[TriangleMesh],
+        variant: EmbreeVariant,
+        filters: bool,
+    ) -> Result<Self> {
         // SAFETY: the device is valid.
         let handle = unsafe { sys::rtcNewScene(device.handle()) };
         if handle.is_null() {
@@ -61,14 +73,22 @@ impl EmbreeScene {
         }
         let scene = Self { handle, own_meshes: meshes.len() as u32 };
         // SAFETY: the scene is valid and not committed yet.
-        unsafe { sys::rtcSetSceneFlags(handle, sys::RTCSceneFlags::RTC_SCENE_FLAG_ROBUST) };
+        unsafe { sys::rtcSetSceneFlags(handle, variant.flags()) };
+        // SAFETY: as above.
+        unsafe { sys::rtcSetSceneBuildQuality(handle, variant.quality()) };
         for (i, mesh) in meshes.iter().enumerate() {
-            scene.attach_mesh(device, mesh, i as u32)?;
+            scene.attach_mesh(device, mesh, i as u32, filters && mesh.filtered)?;
         }
         Ok(scene)
     }
 
-    fn attach_mesh(&self, device: &Device, mesh: &TriangleMesh, id: u32) -> Result<()> {
+    fn attach_mesh(
+        &self,
+        device: &Device,
+        mesh: &TriangleMesh,
+        id: u32,
+        filtered: bool,
+    ) -> Result<()> {
         let triangle = sys::RTCGeometryType::RTC_GEOMETRY_TYPE_TRIANGLE;
         // SAFETY: the device is valid.
         let handle = unsafe { sys::rtcNewGeometry(device.handle(), triangle) };
@@ -100,7 +120,7 @@ impl EmbreeScene {
                 mesh.triangles.len(),
             );
         }
-        if mesh.filtered {
+        if filtered {
             // SAFETY: the geometry is valid; the filter lives in the shim.
             unsafe { sys::glint_filter_geometry(handle) };
         }

@@ -4,6 +4,7 @@ pub(crate) mod chi_square;
 pub(crate) mod program;
 pub(crate) mod reference_obj;
 pub(crate) mod scenes;
+pub(crate) mod schema;
 pub(crate) mod z_test;
 
 /// How much more the thorough tier does than the quick one: `GLINT_FULL=1` and no other value, as in `x`.

@@ -28,6 +28,10 @@ impl Source {
         let (path, text) = (path.into(), text.into());
         let mut tokens = lex(&text);
         mark(&mut tokens);
+        // A file of unit tests, announced where its module is declared.
+        if path.ends_with("/tests.rs") {
+            tokens.iter_mut().for_each(|token| token.in_test = true);
+        }
         Self { path, text, tokens }
     }
 

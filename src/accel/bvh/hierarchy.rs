@@ -1,0 +1,292 @@
+//! All nodes and leaves of a world in one arena: a tree for the meshes that stand in it, one for each object, and one
+//! over the instances.
+//!
+//! A node's children lie side by side, its inner ones and then its leaves. Knows how trees are stored, not how they are
+//! built or traversed.
+
+use super::backend_error;
+use super::binned::{self, BinaryNode, PrimitiveBox};
+use super::block::{self, Block, Meshes, Numbers};
+use super::collapse::{WideNode, WideTree, collapse};
+use super::node::{Kind, LEAF_UNITS, NODE_UNITS, Node, Reference, UNIT, WIDTH};
+use crate::error::Result;
+use crate::geometry::{Aabb, Geometry, Instance, TriangleMesh};
+use crate::math::{DAffine3, Vec3};
+use crate::os::Arena;
+use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
+
+/// Trees over triangles, and one over instances.
+#[derive(Default)]
+pub(super) struct Hierarchy {
+    units: Arena<Unit>,
+    /// How many of them are taken.
+    used: usize,
+    /// Over the meshes that stand in the world.
+    pub(super) own: Tree,
+    /// Over each object's meshes, in its own space.
+    pub(super) objects: Vec<Tree>,
+    /// Over the instances.
+    pub(super) instances: Tree,
+    /// Instances in the order of the leaves.
+    order: Vec<u32>,
+    /// For each instance.
+    pub(super) object_from_world: Vec<DAffine3>,
+}
+
+/// What nodes and leaves are made of.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C, align(32))]
+struct Unit([u8; UNIT]);
+
+/// One tree in the arena.
+pub(super) struct Tree {
+    /// `None` without primitives.
+    pub(super) root: Option<Reference>,
+    pub(super) bounds: Aabb,
+    /// Largest absolute coordinate of the bounds.
+    pub(super) size: f32,
+    /// The most references that a depth-first walk leaves for later.
+    pub(super) pending: usize,
+    /// From numbers in leaves to primitives.
+    pub(super) numbers: Numbers,
+}
+
+impl Default for Tree {
+    fn default() -> Self {
+        Self::new(None, Aabb::EMPTY, &WideTree::default(), Numbers::new(&[]))
+    }
+}
+
+impl Tree {
+    fn new(root: Option<Reference>, bounds: Aabb, wide: &WideTree, numbers: Numbers) -> Self {
+        let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let size = if root.is_some() { size } else { 0.0 };
+        Self { root, bounds, size, pending: wide.pending, numbers }
+    }
+}
+
+impl Hierarchy {
+    /// Builds all trees.
+    ///
+    /// # Errors
+    /// When there are 2^30 triangles or 2^27 instances or more, or not enough memory.
+    pub(super) fn build(geometry: &Geometry) -> Result<Self> {
+        // References have 30 bits.
+        let triangles = geometry.stored_triangles();
+        let instances = geometry.instances.len();
+        if triangles.max(instances * LEAF_UNITS) >= Reference::NUMBERS {
+            return Err(backend_error("more than 2^30 triangles or 2^27 instances"));
+        }
+        // Room for the most there can be: leaves of one triangle, and as many nodes. What is not written costs
+        // nothing.
+        let memory = || backend_error("not enough memory for the hierarchy");
+        let trees = geometry.objects.len() + 2;
+        let units =
+            triangles * (NODE_UNITS + LEAF_UNITS) + (geometry.instances.len() + trees) * NODE_UNITS;
+        let mut all = Self { units: Arena::zeroed(units).ok_or_else(memory)?, ..Self::default() };
+        all.own = all.add_meshes(&geometry.meshes)?;
+        for object in &geometry.objects {
+            let tree = all.add_meshes(&object.meshes)?;
+            all.objects.push(tree);
+        }
+        all.add_instances(geometry)?;
+        all.units.truncate(all.used);
+        Ok(all)
+    }
+
+    /// How many instances can be hit.
+    pub(super) fn instance_count(&self) -> usize {
+        self.order.len()
+    }
+
+    /// References that the deepest walk leaves for later.
+    pub(super) fn pending(&self) -> usize {
+        // The end, both roots, and in an instance the way back and the object.
+        let deepest = self.objects.iter().map(|tree| tree.pending).max().unwrap_or(0);
+        3 + self.own.pending.max(self.instances.pending + 2 + deepest)
+    }
+
+    /// Bytes of all of it.
+    pub(super) fn bytes(&self) -> usize {
+        let numbers = |tree: &Tree| tree.numbers.bytes();
+        size_of_val(&*self.units)
+            + size_of_val(&*self.order)
+            + size_of_val(&*self.object_from_world)
+            + size_of_val(&*self.objects)
+            + numbers(&self.own)
+            + self.objects.iter().map(numbers).sum::<usize>()
+    }
+
+    /// Where the unit is that a reference to a node or a leaf names.
+    #[inline(always)]
+    pub(super) fn place(&self, reference: Reference) -> *const u8 {
+        self.units.as_ptr().wrapping_add(reference.number()).cast()
+    }
+
+    /// The node that is referred to.
+    #[inline(always)]
+    pub(super) fn node(&self, reference: Reference) -> &Node {
+        debug_assert!(reference.kind() == Kind::Node as usize);
+        // SAFETY: references to nodes are made in `add_tree` only, where the nodes are.
+        unsafe { &*self.place(reference).cast() }
+    }
+
+    /// The leaf that is referred to.
+    #[inline(always)]
+    pub(super) fn block(&self, reference: Reference) -> &Block {
+        debug_assert!(reference.kind() == Kind::Leaf as usize);
+        // SAFETY: references to leaves are made in `add_tree` only, where the leaves are.
+        unsafe { &*self.place(reference).cast() }
+    }
+
+    /// [`Self::node`], if it lies in the arena.
+    pub(super) fn checked_node(&self, reference: Reference) -> Option<&Node> {
+        let is_there = reference.number() + NODE_UNITS <= self.units.len();
+        (is_there && reference.number().is_multiple_of(NODE_UNITS)).then(|| self.node(reference))
+    }
+
+    /// [`Self::block`], if it lies in the arena.
+    pub(super) fn checked_block(&self, reference: Reference) -> Option<&Block> {
+        let is_there = reference.number() + LEAF_UNITS <= self.units.len();
+        is_there.then(|| self.block(reference))
+    }
+
+    /// The instance that is referred to.
+    #[inline]
+    pub(super) fn instance(&self, reference: Reference) -> Option<u32> {
+        self.order.get(reference.number() / LEAF_UNITS).copied()
+    }
+
+    /// The tree of an instance's object, or of the world's own meshes.
+    #[inline(always)]
+    pub(super) fn tree_of(&self, geometry: &Geometry, instance: u32) -> &Tree {
+        match geometry.instances.get(instance as usize) {
+            Some(instance) => &self.objects[instance.object as usize],
+            None => &self.own,
+        }
+    }
+
+    /// A tree over the triangles of some meshes.
+    fn add_meshes(&mut self, meshes: &[TriangleMesh]) -> Result<Tree> {
+        let meshes = Meshes::new(meshes);
+        let (tree, order) = binned::build(meshes.boxes(), block::SIZE);
+        let wide = collapse(&tree);
+        let leaf = |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize]);
+        let root = self.add_tree(&tree, &wide, Some(&leaf))?;
+        Ok(Tree::new(root, bounds(&tree), &wide, meshes.into_numbers()))
+    }
+
+    /// The tree over the instances.
+    fn add_instances(&mut self, geometry: &Geometry) -> Result<()> {
+        let inverse = |i: &Instance| i.world_from_object.to_f64().inverse();
+        self.object_from_world = geometry.instances.iter().map(inverse).collect();
+        let mut boxes = Vec::new();
+        for (instance, id) in geometry.instances.iter().zip(0..) {
+            let bounds = self.objects[instance.object as usize].bounds;
+            let corner = |p| instance.world_from_object.transform_point_f64(p).as_vec3();
+            let world = bounds.corners().map(corner);
+            // What an object without triangles or a singular map leaves is never hit.
+            let is_regular = self.object_from_world[id as usize].is_finite();
+            if is_regular && !bounds.is_empty() && world.iter().all(|p| p.is_finite()) {
+                let around = world.into_iter().fold(Aabb::EMPTY, Aabb::with_point);
+                // The ray is transformed in `f32`: room for what that loses, a few units of the largest
+                // coordinate on the way.
+                let largest = around.min.abs().max(around.max.abs()).max_element();
+                let margin = Vec3::splat(largest * 1e-6);
+                let bounds = Aabb { min: around.min - margin, max: around.max + margin };
+                boxes.push(PrimitiveBox { bounds, id });
+            }
+        }
+        let (tree, order) = binned::build(boxes, 1);
+        let wide = collapse(&tree);
+        let root = self.add_tree(&tree, &wide, None::<&fn(u32, u32) -> Block>)?;
+        let children = wide.nodes.iter().flat_map(WideNode::children);
+        let leaves = children.filter_map(|&child| leaf_range(&tree[child as usize]));
+        self.order = leaves.map(|(start, _)| order[start as usize]).collect();
+        self.instances = Tree::new(root, bounds(&tree), &wide, Numbers::new(&[]));
+        Ok(())
+    }
+
+    /// Stores a tree. Leaves are made by `leaf` from their range of primitives; without it they are instances, by
+    /// their number.
+    fn add_tree(
+        &mut self,
+        tree: &[BinaryNode],
+        wide: &WideTree,
+        leaf: Option<&(impl Fn(u32, u32) -> Block + Sync)>,
+    ) -> Result<Option<Reference>> {
+        if wide.nodes.is_empty() {
+            return Ok(None);
+        }
+        // The root, then the children of each node, in the order of the nodes.
+        let root = self.used.next_multiple_of(NODE_UNITS);
+        let leaf_units = if leaf.is_some() { LEAF_UNITS } else { 0 };
+        let mut places = Vec::with_capacity(wide.nodes.len());
+        let mut end = root + NODE_UNITS;
+        for node in &wide.nodes {
+            // Nodes begin on cache lines.
+            let place = end.next_multiple_of(if node.inner().is_empty() { 1 } else { NODE_UNITS });
+            places.push(place);
+            end = place + node.inner().len() * NODE_UNITS + usize::from(node.leaves()) * leaf_units;
+        }
+        self.used = end;
+        if end > Reference::NUMBERS.min(self.units.len()) {
+            return Err(backend_error("the hierarchy would be larger than 32 GiB"));
+        }
+        let new_node = |i: usize| {
+            let source = &wide.nodes[i];
+            let mut boxes = [Aabb::EMPTY; WIDTH];
+            for (bounds, &child) in boxes.iter_mut().zip(source.children()) {
+                *bounds = tree[child as usize].bounds;
+            }
+            let boxes = &boxes[..source.children().len()];
+            let instances = leaf.is_none().then_some(source.leaves_before as usize);
+            Node::new(boxes, source.inner().len(), places[i], instances)
+        };
+        let (of_root, mut rest) = self.units[root..end].split_at_mut(NODE_UNITS);
+        of_root.copy_from_slice(bytemuck::cast_slice(&[new_node(0)]));
+        // The children of many nodes at a time, and the units that they fill.
+        const CHUNK: usize = 256;
+        let mut chunks = Vec::with_capacity(wide.nodes.len() / CHUNK + 1);
+        let mut begin = root + NODE_UNITS;
+        for first in (0..wide.nodes.len()).step_by(CHUNK) {
+            let last = (first + CHUNK).min(wide.nodes.len());
+            let end = places.get(last).copied().unwrap_or(end);
+            let (units, behind) = rest.split_at_mut(end - begin);
+            chunks.push((first..last, begin, units));
+            (begin, rest) = (end, behind);
+        }
+        chunks.into_par_iter().for_each(|(range, begin, units)| {
+            for i in range {
+                let source = &wide.nodes[i];
+                let mut place = places[i] - begin;
+                for child in source.inner() {
+                    units[place..place + NODE_UNITS]
+                        .copy_from_slice(bytemuck::cast_slice(&[new_node(child)]));
+                    place += NODE_UNITS;
+                }
+                let Some(leaf) = leaf else { continue };
+                for &child in &source.children()[source.inner().len()..] {
+                    let Some((start, end)) = leaf_range(&tree[child as usize]) else { continue };
+                    units[place..place + LEAF_UNITS]
+                        .copy_from_slice(bytemuck::cast_slice(&[leaf(start, end)]));
+                    place += LEAF_UNITS;
+                }
+            }
+        });
+        Ok(Some(Reference::new(Kind::Node, root)))
+    }
+}
+
+/// The range of primitives of a leaf.
+fn leaf_range(node: &BinaryNode) -> Option<(u32, u32)> {
+    match node.kind {
+        binned::Kind::Leaf { start, end } => Some((start, end)),
+        binned::Kind::Inner(_) => None,
+    }
+}
+
+fn bounds(tree: &[BinaryNode]) -> Aabb {
+    tree.first().map_or(Aabb::EMPTY, |root| root.bounds)
+}

@@ -1,0 +1,155 @@
+//! One ray on its way: what it is, where it is, what it has left for later.
+//!
+//! Knows references, not what they refer to.
+
+use super::binned::HALVE_FROM;
+use super::hierarchy::Hierarchy;
+use super::node::{Reference, WIDTH};
+use super::ray::BoxRay;
+use super::woop::Shear;
+use crate::geometry::{Geometry, NONE, Ray};
+use crate::math::Vec3;
+use crate::os::Arena;
+use bytemuck::Zeroable;
+
+/// References that a stack has room for, with what vectors are written beyond its top: both levels as deep as
+/// the builder's limit on depth lets them be, with all but one child of every node left for later.
+pub(super) const ROOM: usize = 2 * (HALVE_FROM as usize + 30) * (WIDTH - 1) + 5 + SPARE;
+
+/// What vectors write beyond a stack's top.
+pub(super) const SPARE: usize = WIDTH;
+
+/// A ray in flight.
+#[derive(Clone, Copy, Zeroable)]
+#[repr(C, align(64))]
+pub(super) struct Slot {
+    /// In the space in which it is: the world's or an object's. So is the shear.
+    pub(super) boxes: BoxRay,
+    pub(super) t_min: f32,
+    /// The distance beyond which nothing is of interest; equal distances are.
+    pub(super) limit: f32,
+    /// What it does next.
+    pub(super) next: Reference,
+    /// Elements on its stack.
+    pub(super) top: u32,
+    pub(super) shear: Shear,
+    /// In the world.
+    pub(super) origin: Vec3,
+    pub(super) direction: Vec3,
+    /// Place in the batch.
+    pub(super) ray: u32,
+    /// That it is in, or none.
+    pub(super) instance: u32,
+    pub(super) best: Found,
+    /// What is left for later, and where the ray enters it: the nearest last.
+    pub(super) references: [u32; ROOM],
+    pub(super) entries: [f32; ROOM],
+    /// An odd number of cache lines from slot to slot: they do not fall on the same places of the cache.
+    unused: [u32; 8],
+}
+
+/// A triangle that the ray hits, or none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Zeroable)]
+#[repr(C)]
+pub(super) struct Found {
+    pub(super) leaf: Reference,
+    pub(super) lane: u32,
+    pub(super) instance: u32,
+}
+
+impl Found {
+    /// Nothing so far.
+    pub(super) const NONE: Self = Self { leaf: Reference::NOTHING, lane: 0, instance: NONE };
+}
+
+const _: () = assert!(size_of::<Slot>() / 64 % 2 == 1);
+
+/// Slots on huge pages.
+pub(super) type Slots = Arena<Slot>;
+
+/// That many slots; none if there is no memory for them.
+#[cold]
+pub(super) fn slots(count: usize) -> Slots {
+    Arena::zeroed(count).unwrap_or_default()
+}
+
+impl Slot {
+    /// Takes the top off a stack of that height.
+    #[inline(always)]
+    pub(super) fn pop(&mut self, top: usize) -> Reference {
+        // Never empty: the reference that ends it is at the bottom.
+        let top = top - 1;
+        self.top = top as u32;
+        self.next = Reference(self.references[top]);
+        self.next
+    }
+
+    #[inline(always)]
+    fn push(&mut self, reference: Reference) {
+        let top = self.top as usize;
+        self.references[top] = reference.0;
+        // Never pruned.
+        self.entries[top] = f32::NEG_INFINITY;
+        self.top += 1;
+    }
+
+    /// Begins with a ray, of that place in its batch.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, ray: &Ray, place: u32, hierarchy: &Hierarchy) {
+        self.ray = place;
+        self.best = Found::NONE;
+        // Not -0, whose bits do not sort as a distance.
+        self.t_min = ray.t_min + 0.0;
+        // A hit at t_max does not count, one at the best so far does.
+        self.limit = ray.t_max.next_down();
+        (self.origin, self.direction) = (ray.origin, ray.direction);
+        self.in_world(ray, hierarchy);
+        self.top = 0;
+        self.push(Reference::DONE);
+        let (o, d) = (ray.origin, ray.direction);
+        if o.is_finite() && d.is_finite() && d != Vec3::ZERO {
+            if let Some(root) = hierarchy.instances.root {
+                self.push(root);
+            }
+            if let Some(root) = hierarchy.own.root {
+                self.push(root);
+            }
+        }
+    }
+
+    /// Enters the object of an instance. The ray keeps its parameter: its direction is not normalised.
+    #[inline(never)]
+    pub(super) fn enter(
+        &mut self,
+        ray: &Ray,
+        instance: u32,
+        hierarchy: &Hierarchy,
+        geometry: &Geometry,
+    ) {
+        let map = &hierarchy.object_from_world[instance as usize];
+        let origin = map.transform_point3(ray.origin.as_dvec3()).as_vec3();
+        let direction = map.transform_vector3(ray.direction.as_dvec3()).as_vec3();
+        let tree = hierarchy.tree_of(geometry, instance);
+        self.instance = instance;
+        self.boxes = BoxRay::new(origin, direction, tree.size);
+        self.shear = Shear::new(origin, direction);
+        self.push(Reference::LEAVE);
+        if let Some(root) = tree.root {
+            self.push(root);
+        }
+    }
+
+    /// Back to the world.
+    #[inline(never)]
+    pub(super) fn leave(&mut self, ray: &Ray, hierarchy: &Hierarchy) {
+        self.in_world(ray, hierarchy);
+    }
+
+    #[inline(always)]
+    fn in_world(&mut self, ray: &Ray, hierarchy: &Hierarchy) {
+        let size = hierarchy.own.size.max(hierarchy.instances.size);
+        self.instance = NONE;
+        self.boxes = BoxRay::new(ray.origin, ray.direction, size);
+        self.shear = Shear::new(ray.origin, ray.direction);
+    }
+}

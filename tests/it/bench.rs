@@ -1,0 +1,438 @@
+//! `glint bench`: its rays, what becomes of a backend that lies, and the command.
+
+#[cfg(feature = "bvh")]
+use glint::accel::bvh::Bvh as Backend;
+#[cfg(not(feature = "bvh"))]
+use glint::accel::embree::EmbreeAccelerator as Backend;
+use glint::accel::{Accelerator, AcceptAll, BuildStats, HitFilter};
+use glint::generate::{Kind, Model, write_obj};
+use glint::geometry::{Hit, PrimitiveId, Ray};
+use glint::load::load_scene;
+use glint::math::DVec3;
+use glint::os::Isa;
+use glint::scene::{Camera, Projection};
+use glint::study::bench::{
+    Contestant, Findings, InHouse, Law, RayKind, RaySet, RaySource, Role, Settings, contest,
+};
+use glint::world::World;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::time::Duration;
+
+fn world(kind: Kind, triangles: u64) -> World {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.obj");
+    let mut file = std::fs::File::create(&path).unwrap();
+    write_obj(&Model { kind, triangles, seed: 0 }, "model.mtl", &mut file, &mut |_| Ok(()))
+        .unwrap();
+    World::compile(load_scene(&path).unwrap()).unwrap()
+}
+
+/// Two views from above, one twice as close.
+fn cameras(world: &World) -> [Camera; 2] {
+    let (to, radius) = (world.bounds.center().as_dvec3(), world.bounds.bounding_radius());
+    [2.0, 1.0].map(|far| Camera {
+        name: "test".into(),
+        from: world.origin + to + DVec3::new(0.3, 0.8, 0.5) * f64::from(far * radius),
+        to: world.origin + to,
+        up: DVec3::Y,
+        projection: Projection::Perspective { vertical_fov: 35.0 },
+    })
+}
+
+fn ray_sets(world: &World, backend: &Backend, count: usize) -> Vec<RaySet> {
+    let closest = |rays: &[Ray]| {
+        let mut hits = vec![Hit::MISS; rays.len()];
+        backend.closest(rays, &AcceptAll, &mut hits);
+        hits
+    };
+    let source = RaySource { world, cameras: &cameras(world), closest: &closest };
+    source.generate(&RayKind::ALL.map(|(_, kind)| kind), count).expect("cameras")
+}
+
+#[test]
+fn rays_follow_from_the_scene_and_are_what_their_kind_says() {
+    let world = world(Kind::Foliage, 20_000);
+    let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
+    // Neither a multiple of tiles nor of packets.
+    let sets = ray_sets(&world, &backend, 3001);
+    assert!(sets == ray_sets(&world, &backend, 3001), "the same rays twice");
+    // How far the rays of neighbours go apart: the mean cosine.
+    let coherence = |set: &RaySet| {
+        let pairs = set.rays.windows(2);
+        let cosine =
+            |pair: &[Ray]| pair[0].direction.normalize().dot(pair[1].direction.normalize());
+        pairs.map(cosine).sum::<f32>() / (set.rays.len() - 1) as f32
+    };
+    let radius = world.bounds.bounding_radius();
+    for set in &sets {
+        let name = set.kind.name();
+        assert_eq!(set.rays.len(), 3001, "{name}");
+        for (ray, id) in set.rays.iter().zip(0..) {
+            assert!(ray.origin.is_finite() && ray.t_min == 0.0 && ray.id == id, "{name}: {ray:?}");
+            let length = ray.direction.length();
+            let is_unit = (length - 1.0).abs() < 1e-5;
+            match set.kind {
+                RayKind::Shadow => assert!(length.is_finite() && ray.t_max < 1.0, "{ray:?}"),
+                RayKind::AmbientOcclusion => assert!(is_unit && ray.t_max == 0.2 * radius),
+                _ => assert!(is_unit && ray.t_max == f32::INFINITY, "{name}: {ray:?}"),
+            }
+            if set.kind != RayKind::Primary {
+                let outside =
+                    (ray.origin - world.bounds.center()).abs() - 0.5 * world.bounds.extent();
+                assert!(outside.max_element() < 1e-3 * radius, "{name}: {ray:?}");
+            }
+        }
+        let coherence = coherence(set);
+        match set.kind {
+            RayKind::Primary => assert!(coherence > 0.99, "{coherence}"),
+            RayKind::DeepBounce | RayKind::Random => assert!(coherence.abs() < 0.1, "{coherence}"),
+            _ => {}
+        }
+    }
+    // No two kinds share their numbers.
+    assert!(sets[1].rays.iter().zip(&sets[4].rays).all(|(a, b)| a.direction != b.direction));
+}
+
+#[test]
+fn a_scene_without_room_for_some_kind_has_none_of_it() {
+    // The cameras look away: nothing to bounce off.
+    let world = world(Kind::Sphereflake, 5000);
+    let away = cameras(&world).map(|c| Camera { to: c.from + c.from - c.to, ..c });
+    let miss = |rays: &[Ray]| vec![Hit::MISS; rays.len()];
+    let source = RaySource { world: &world, cameras: &away, closest: &miss };
+    let sets = source.generate(&RayKind::ALL.map(|(_, kind)| kind), 100).expect("cameras");
+    let counts: Vec<_> = sets.iter().map(|set| set.rays.len()).collect();
+    assert_eq!(counts, [100, 0, 0, 0, 0, 100]);
+}
+
+/// A backend that loses every hit on some primitives, or puts another in their place.
+struct Liar<'a> {
+    backend: &'a Backend,
+    lie: fn(PrimitiveId) -> Option<PrimitiveId>,
+    /// How often it is honest before.
+    honest_calls: AtomicUsize,
+}
+
+impl Accelerator for Liar<'_> {
+    fn closest<F: HitFilter>(&self, rays: &[Ray], filter: &F, hits: &mut [Hit]) {
+        self.backend.closest(rays, filter, hits);
+        let one_less = |calls: usize| calls.checked_sub(1);
+        if self.honest_calls.fetch_update(Relaxed, Relaxed, one_less).is_ok() {
+            return;
+        }
+        for hit in hits.iter_mut().filter(|hit| hit.is_hit()) {
+            *hit = (self.lie)(hit.id).map_or(Hit::MISS, |id| Hit { id, ..*hit });
+        }
+    }
+
+    fn occluded<F: HitFilter>(&self, rays: &[Ray], filter: &F, blocked: &mut [bool]) {
+        let mut hits = vec![Hit::MISS; rays.len()];
+        self.closest(rays, filter, &mut hits);
+        blocked.iter_mut().zip(&hits).for_each(|(blocked, hit)| *blocked = hit.is_hit());
+    }
+
+    fn build_stats(&self) -> BuildStats {
+        self.backend.build_stats()
+    }
+}
+
+fn contestant<'a, A: Accelerator>(accelerator: &'a A, name: &str, law: Law) -> Contestant<'a> {
+    Contestant {
+        backend: "bvh",
+        variant: name.into(),
+        isa: Isa::detect(),
+        law,
+        role: Role::Challenger,
+        tracer: Box::new(InHouse { accelerator, slice: 100 }),
+    }
+}
+
+fn settings(threads: &[usize]) -> Settings {
+    Settings {
+        rays: 0,
+        kinds: Vec::new(),
+        threads: threads.to_vec(),
+        isa: Isa::detect(),
+        repetitions: Some(2),
+        time: Duration::from_secs(1),
+        all_calls: false,
+    }
+}
+
+fn race(world: &World, sets: &[RaySet], contestants: &[Contestant<'_>]) -> Findings {
+    contest("test", &world.geometry, sets, contestants, &settings(&[1, 2]), &|_, _| ())
+}
+
+#[test]
+fn who_lies_gets_no_time_and_is_found_out() {
+    let world = world(Kind::Foliage, 20_000);
+    let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
+    let sets = ray_sets(&world, &backend, 5000);
+    let liar = |lie, honest_calls: usize| Liar {
+        backend: &backend,
+        lie,
+        honest_calls: honest_calls.into(),
+    };
+    let loses = liar(|id| (id.primitive % 5 != 0).then_some(id), 0);
+    let swap = |id: PrimitiveId| {
+        let primitive = id.primitive ^ u32::from(id.primitive == 77);
+        Some(PrimitiveId { primitive, ..id })
+    };
+    let swaps = liar(swap, 0);
+    let contestants = [
+        contestant(&backend, "honest", Law::Exact),
+        contestant(&loses, "loses", Law::Exact),
+        contestant(&loses, "loses a lot, officially", Law::Approximate),
+        contestant(&swaps, "swaps", Law::Exact),
+    ];
+    let findings = race(&world, &sets, &contestants);
+    // Every kind on one thread and on two.
+    assert_eq!(findings.runs.len(), 6 * 2 * contestants.len());
+    for run in &findings.runs {
+        let agreement = &run.agreement;
+        assert_eq!(agreement.compared, 5000);
+        match run.variant.as_str() {
+            "honest" => {
+                let speed = run.rays_per_second.expect("it was right");
+                assert!(0.0 < speed.min && speed.min <= speed.median && speed.median <= speed.max);
+                assert_eq!((agreement.differing(), agreement.unexplained), (0, 0));
+            }
+            "swaps" => {
+                let hits = agreement.different + agreement.near + agreement.ties;
+                assert_eq!(agreement.differing(), hits);
+                assert_eq!(run.rays_per_second.is_none(), agreement.unexplained > 0);
+            }
+            _ => {
+                // A surface behind may have been met instead, if any.
+                let lost = agreement.missed + agreement.different;
+                assert!(lost > 20 && agreement.unexplained > 20, "{}: {agreement:?}", run.ray_kind);
+                assert_eq!(run.rays_per_second, None, "{}", run.ray_kind);
+            }
+        }
+    }
+    let swapped = findings.runs.iter().filter(|run| run.variant == "swaps");
+    assert!(swapped.filter(|run| run.rays_per_second.is_none()).count() > 0);
+    // Nobody is compared with a liar, nor a liar with anybody. (There is no rival here at all.)
+    assert!(findings.ratios.is_empty() && findings.heats.is_empty());
+}
+
+#[test]
+fn who_is_right_when_it_is_checked_and_lies_when_it_is_timed_is_found_out() {
+    let world = world(Kind::Foliage, 5000);
+    let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
+    let sets = ray_sets(&world, &backend, 1000);
+    // The check takes 20 calls, 10 of them to warm up; here those of the last two repetitions go wrong.
+    let later = Liar { backend: &backend, lie: |_| None, honest_calls: 60.into() };
+    let contestants =
+        [contestant(&backend, "honest", Law::Exact), contestant(&later, "later", Law::Approximate)];
+    let findings = race(&world, &sets[..1], &contestants);
+    for run in findings.runs {
+        let agreement = run.agreement;
+        assert_eq!((agreement.compared, agreement.differing()), (1000, 0), "{}", run.variant);
+        let is_honest = run.variant == "honest";
+        assert_eq!(agreement.unsteady_turns == 0, is_honest);
+        assert_eq!(run.rays_per_second.is_some(), is_honest);
+    }
+}
+
+#[test]
+fn rivals_are_compared_in_the_same_repetitions() {
+    let world = world(Kind::City, 5000);
+    let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
+    let sets = ray_sets(&world, &backend, 2000);
+    let with_role = |name, role| Contestant { role, ..contestant(&backend, name, Law::Exact) };
+    let contestants = [
+        with_role("ours", Role::Challenger),
+        with_role("as usual", Role::Baseline),
+        with_role("a", Role::Heat),
+        with_role("b", Role::Heat),
+        with_role("c", Role::Heat),
+    ];
+    let findings = race(&world, &sets[..1], &contestants);
+    // Two of three qualify, and race on both numbers of threads.
+    assert_eq!(findings.heats.len(), 3);
+    assert!(findings.heats.iter().all(|heat| heat.rays_per_second.is_some()));
+    assert_eq!(findings.heats.iter().filter(|heat| heat.qualified).count(), 2);
+    assert_eq!(findings.runs.len(), 4 * 2);
+    let against: Vec<_> = findings.ratios.iter().map(|r| (r.threads, r.against)).collect();
+    assert_eq!(against, [(1, "baseline"), (1, "best"), (2, "baseline"), (2, "best")]);
+    for comparison in &findings.ratios {
+        let ratio = comparison.ratio;
+        assert!(0.0 < ratio.low && ratio.low <= ratio.median && ratio.median <= ratio.high);
+        assert_eq!(comparison.variant, "ours");
+    }
+    assert_eq!(findings.scene.repetitions, 2);
+}
+
+/// Every variant and call of Embree's gives Embree's own answers, whatever the number of rays.
+#[cfg(feature = "embree")]
+#[test]
+fn every_call_of_embrees_gives_the_answers_of_single_rays() {
+    use glint::accel::embree::{BareEmbree, EmbreeAccelerator, EmbreeCall, EmbreeVariant};
+    use glint::study::bench::Query;
+    let world = world(Kind::Foliage, 20_000);
+    let embree = EmbreeAccelerator::build(world.geometry.clone(), 1).expect("it builds");
+    let sets =
+        ray_sets(&world, &Backend::build(world.geometry.clone(), 1).expect("it builds"), 999);
+    for (name, variant) in EmbreeVariant::ALL {
+        let bare = BareEmbree::build(world.geometry.clone(), 1, variant, Isa::detect());
+        let bare = bare.expect("it builds");
+        assert!(bare.build_stats().bytes > 100_000, "{name}");
+        let calls = EmbreeCall::for_several().into_iter().chain([EmbreeCall::Single]);
+        for call in calls {
+            for set in &sets {
+                let mut hits = vec![Hit::MISS; set.rays.len()];
+                embree.closest(&set.rays, &AcceptAll, &mut hits);
+                let query = set.kind.query();
+                let mut rays = match query {
+                    Query::Closest => bare.closest(call),
+                    Query::AnyHit => bare.occluded(call).expect("there are no instances"),
+                };
+                // Twice, the second time over the first.
+                for count in [999, 500] {
+                    rays.load(&set.rays[..count]);
+                    rays.trace();
+                    let answers = rays.read();
+                    assert_eq!(answers.len(), count);
+                    let same = answers.iter().zip(&hits).filter(|((hit, id), expected)| {
+                        *hit == expected.is_hit() && (query == Query::AnyHit || *id == expected.id)
+                    });
+                    let (same, place) = (same.count(), (name, call.name(), set.kind.name()));
+                    assert!(same >= count - 1, "{place:?}: {same} of {count}");
+                }
+            }
+        }
+    }
+}
+
+#[cfg(feature = "embree")]
+mod program {
+    use crate::support::program::Bench;
+    use crate::support::schema::{faults, not_promised, schema};
+    use serde_json::Value;
+    use std::fs;
+
+    /// Quick: few rays, taken twice.
+    const QUICK: [&str; 6] = ["--rays", "2k", "--repetitions", "2", "--threads", "1,2"];
+
+    fn bench(bench: &Bench, arguments: &[&str]) -> (i32, String, String) {
+        let output = bench.glint(&[&["bench"], arguments].concat());
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        let (out, said) = (text(&output.stdout), text(&output.stderr));
+        assert!(!said.contains("panicked"), "{said}");
+        (output.status.code().unwrap_or(-1), out, said)
+    }
+
+    /// A folder with a model that has an awkward name, and a scene that places it twice.
+    fn folder() -> Bench {
+        let bench = Bench::new();
+        let made = bench.glint(&["generate", "city", "-o", "c.obj", "--triangles", "4k"]);
+        assert!(made.status.success());
+        fs::rename(bench.path("c.obj"), bench.path("a<b>&'c'.obj")).unwrap();
+        let twice = "[[object]]\nfile = \"a<b>&'c'.obj\"\n\n\
+            [[object]]\nfile = \"a<b>&'c'.obj\"\ntranslate = [100, 0, 20]\n";
+        bench.file("twice.toml", twice);
+        bench
+    }
+
+    #[test]
+    fn the_schema_names_what_scripts_rely_on() {
+        let promised = "runs/[]/backend runs/[]/variant runs/[]/isa runs/[]/threads runs/[]/ray_kind \
+            runs/[]/rays_per_second/median runs/[]/rays_per_second/min runs/[]/rays_per_second/max \
+            runs/[]/hits runs/[]/agreement/compared runs/[]/agreement/missed runs/[]/agreement/false_hits \
+            runs/[]/agreement/ties runs/[]/agreement/unexplained builds/[]/backend builds/[]/variant \
+            builds/[]/seconds builds/[]/bytes machine/cpu machine/threads machine/date";
+        assert_eq!(not_promised(&schema("bench"), promised), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_bench_of_two_scenes_says_all_of_it_in_json_and_on_a_page() {
+        let folder = folder();
+        let scenes = ["a<b>&'c'.obj", "twice.toml"];
+        let (code, out, said) =
+            bench(&folder, &[&scenes[..], &QUICK, &["--json", "-o", "r.html"]].concat());
+        assert_eq!(code, 0, "{said}");
+        let report: Value = serde_json::from_str(&out).expect("JSON alone on stdout");
+        assert_eq!(faults(&schema("bench"), &report, ""), Vec::<String>::new());
+
+        // Both scenes have every kind, both sides, both numbers of threads; all right and timed.
+        let runs = report["runs"].as_array().unwrap();
+        for scene in scenes {
+            for (kind, _) in glint::study::bench::RayKind::ALL {
+                for threads in [1, 2] {
+                    let mut backends: Vec<_> = runs
+                        .iter()
+                        .filter(|r| r["scene"] == scene && r["ray_kind"] == kind)
+                        .filter(|r| r["threads"] == threads)
+                        .filter_map(|r| r["backend"].as_str())
+                        .collect();
+                    backends.dedup();
+                    let expected: &[&str] =
+                        if cfg!(feature = "bvh") { &["embree", "bvh"] } else { &["embree"] };
+                    assert_eq!(backends, expected, "{scene} {kind} {threads}");
+                }
+            }
+        }
+        for run in runs {
+            assert!(run["rays_per_second"]["median"].as_f64() > Some(0.0), "{run}");
+            assert!(run["agreement"]["compared"].as_u64() > Some(100), "{run}");
+        }
+        for build in report["builds"].as_array().unwrap() {
+            assert!(build["repetitions"].as_u64() >= Some(3), "{build}");
+            assert!(build["bytes"].as_u64() > Some(10_000), "{build}");
+        }
+        assert_eq!(report["scenes"][1]["triangles"], 8000);
+        assert_eq!(report["scenes"][1]["stored_triangles"], 4000);
+
+        // The tables went to stderr.
+        for words in ["against Embree", "M rays/s", "bytes/triangle", "deep-bounce", "twice.toml"] {
+            assert!(said.contains(words), "no `{words}` in {said}");
+        }
+        assert!(said.lines().all(|line| line.chars().count() < 120), "{said}");
+
+        // One file, which escapes names and needs nothing from elsewhere.
+        let page = fs::read_to_string(folder.path("r.html")).unwrap();
+        assert!(page.contains("<h2>a&lt;b&gt;&amp;&#39;c&#39;.obj</h2>"));
+        assert!(!page.contains("a<b>"));
+        assert_eq!(page.matches("<svg").count(), 2 * 6 * 2);
+        for elsewhere in ["http", "src=", "href=", "@import", "url("] {
+            assert!(!page.contains(elsewhere), "{elsewhere}");
+        }
+    }
+
+    #[test]
+    fn tables_go_to_stdout_unless_asked_not_to() {
+        let folder = folder();
+        let quick =
+            [&["twice.toml", "--kinds", "random", "--isa", "portable"], &QUICK[..]].concat();
+        let (code, out, said) = bench(&folder, &quick);
+        assert_eq!(code, 0, "{said}");
+        assert!(out.contains("random: 2000 rays") && !out.contains("primary"), "{out}");
+        assert!(!out.contains("avx"), "{out}");
+        let (code, out, said) = bench(&folder, &[&quick[..], &["--quiet"]].concat());
+        assert_eq!((code, out.as_str(), said.as_str()), (0, "", ""));
+    }
+
+    #[test]
+    fn wrong_usage_exits_with_2_and_other_errors_with_1() {
+        let folder = folder();
+        for (arguments, code, words) in [
+            (&["twice.toml", "-o", "r.txt"][..], 2, "must be .html"),
+            (&["twice.toml", "--kinds", "first"], 2, "first-bounce"),
+            (&["twice.toml", "--time", "90"], 2, "90s"),
+            (&["twice.toml", "--time", "0s"], 2, "above 0"),
+            (&["twice.toml", "--rays", "1G"], 2, "at most"),
+            (&["twice.toml", "--threads", "1,many"], 2, "0 to 1024"),
+            (&["twice.toml", "--isa", "neon"], 2, "avx2"),
+            (&["twice.toml", "--repetitions", "0"], 2, "1..=1000"),
+            (&[], 2, "SCENE"),
+            (&["none.obj"], 1, "none.obj"),
+            (&["twice.toml", "-o", "no/r.html"], 1, "cannot write"),
+        ] {
+            let (found, _, said) = bench(&folder, arguments);
+            assert_eq!(found, code, "{arguments:?}: {said}");
+            assert!(said.contains(words), "{arguments:?}: {said}");
+        }
+        assert!(!folder.names().iter().any(|name| name.ends_with("html")));
+    }
+}
