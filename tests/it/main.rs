@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod accel;
+mod agreement;
 mod allocation;
 mod backends;
 mod bench;

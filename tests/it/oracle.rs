@@ -1,10 +1,8 @@
-//! The exact oracle: against whole numbers, against planted errors, and as the judge of the backends.
+//! The exact oracle: against whole numbers and against planted errors. As the judge of the backends: `agreement`.
 
-mod backends;
 mod exhaustive;
 mod noisy;
 mod planted;
-mod scenes;
 mod school;
 
 use glint::geometry::{Geometry, Instance, Object, TriangleMesh};
@@ -12,12 +10,12 @@ use glint::math::{Affine, DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 
 /// A world of these meshes alone.
-fn world(meshes: Vec<TriangleMesh>) -> Arc<Geometry> {
+pub(crate) fn world(meshes: Vec<TriangleMesh>) -> Arc<Geometry> {
     Arc::new(Geometry { meshes, ..Geometry::default() })
 }
 
 /// Every three positions a triangle.
-fn soup(positions: Vec<[f32; 3]>) -> Arc<Geometry> {
+pub(crate) fn soup(positions: Vec<[f32; 3]>) -> Arc<Geometry> {
     let triangles = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
     world(vec![TriangleMesh::new(positions, triangles.collect(), false)])
 }

@@ -1,8 +1,8 @@
 //! How near to an edge a ray must pass for the in-house kernel to be excused for taking the wrong side.
 //!
 //! The kernel of `bvh` (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013) projects corners
-//! along the ray onto a plane, in `f32`, and decides the rest exactly. So it judges a triangle whose projected
-//! corners are slightly off, and nothing else. With u = 2^-24, (X, Y, Z) a corner less the origin, z the axis of
+//! along the ray onto a plane, in `f32`, and decides the rest nearly exactly. So it judges a triangle whose projected
+//! corners are slightly off. With u = 2^-24, (X, Y, Z) a corner less the origin, z the axis of
 //! the largest direction, S = d_x / d_z (|S| <= 1), it computes
 //! ```text
 //! x = (X (1+u) - S (1+u) Z (1+u) (1+u)) (1+u)      each (1+u) a rounding: |error| <= 2u |X| + 4u |S Z| <= 6u M
@@ -15,6 +15,14 @@
 //! **8 ulps of M and 2 ulps of the largest coordinate of the origin there**. The map, its inverse and that of the
 //! corners to the world round to 53 bits; that counts where a map squeezes a thousandfold or places something
 //! small far away, and is bounded for the ray at hand (`KernelRay::in_object`).
+//!
+//! What remains is the sign of p_x q_y - p_y q_x, of rounded products: it is right, or both products are the same
+//! number and the kernel counts the ray as inside. Then they were of one sign and at most u (|p_x q_y| + |p_y q_x|)
+//! apart, and p and q are seen from the ray in opposite quadrants or in the same. In opposite ones the ray passes
+//! between them, within that by |p_x| + |q_x| + |p_y| + |q_y|, so within u / 2 of the largest of the four, which is
+//! at most 2 M: **one ulp more**. In the same one their directions differ by no more than u: where that lets a
+//! triangle in whose edges are farther away, all its corners lie within 2 u of one direction, a needle that points at the ray.
+//! The kernel may find such a needle; here it is not excused.
 //!
 //! Now move the corners steadily from where they are to where the kernel puts them. If the ray is inside before
 //! and outside after, or the other way round, some edge has passed over it. That edge's ends have moved by
@@ -33,7 +41,7 @@ pub struct EdgeDistance {
     /// In ulps (2^-24) of the largest coordinate of the edge's ends relative to the ray's origin, both in the space
     /// of the mesh.
     pub ulps: f64,
-    /// How many of them the rounding of the in-house kernel can be worth: 6, and 8 or more under an instance.
+    /// How many of them the rounding of the in-house kernel can be worth: 7, and 9 or more under an instance.
     pub band: f64,
 }
 
@@ -74,7 +82,7 @@ impl KernelRay {
         Self {
             origin: ray.origin.as_dvec3(),
             direction: ray.direction.as_dvec3(),
-            per_size: 6.0 * MORE * U,
+            per_size: 7.0 * MORE * U,
             fixed: SUBNORMAL,
         }
     }
@@ -111,7 +119,7 @@ impl KernelRay {
         Self {
             origin,
             direction,
-            per_size: 8.0 * MORE * U + 2.0 * MORE * turned + 2.0 * stretch,
+            per_size: 9.0 * MORE * U + 2.0 * MORE * turned + 2.0 * stretch,
             fixed: 3.0 * SUBNORMAL
                 + 2.0 * MORE * (U * size + origin_off)
                 + 2.0 * (stretch * size + translated),
