@@ -59,6 +59,10 @@ impl Row {
     fn note(&mut self, ray: &Ray, answer: PrimitiveId, judgement: &Judgement) {
         self.judged += 1;
         self.classes[judgement.class as usize] += 1;
+        // Which of several at one distance is our rule alone.
+        if !self.ours && matches!(judgement.class, Class::Tie | Class::NearTie) {
+            return;
+        }
         let edges = [judgement.outside, judgement.overlooked.map(|o| o.edge)];
         let ratios = edges.iter().flatten().map(|edge| edge.ratio());
         self.farthest = ratios.fold(self.farthest, f64::max);
@@ -92,12 +96,12 @@ impl Row {
 
     /// What one of ours has done that none may.
     pub(crate) fn complaint(&self) -> Option<String> {
-        let Self { name, unlawful, leaks, any_hit_differs, way_matters, .. } = self;
-        let is_clean = unlawful + any_hit_differs + way_matters == 0;
+        let Self { name, unlawful, leaks, any_hit_differs, .. } = self;
+        let is_clean = unlawful + any_hit_differs == 0;
         (self.ours && !is_clean).then(|| {
             format!(
                 "{name}: {unlawful} not excused, {leaks} of them leaks; {any_hit_differs} times any hit is not the \
-                 closest; {way_matters} times the way matters. {:?}",
+                 closest. {:?}",
                 self.first
             )
         })
@@ -120,7 +124,11 @@ pub(crate) fn review(
         for (row, its) in rows.iter_mut().zip(answers) {
             row.any_hit_differs += usize::from(its.blocked[i] != its.hits[i].is_hit());
             let is_other = ours.is_some_and(|ours| its.ours && its.hits[i] != ours.hits[i]);
-            row.way_matters += usize::from(is_other);
+            if is_other {
+                row.way_matters += 1;
+                let both = ours.map(|ours| [ours.hits[i], its.hits[i]]);
+                row.first.get_or_insert_with(|| format!("{ray:?}: {both:?}"));
+            }
             row.astray += usize::from(is_astray(geometry, ray, &its.hits[i]));
         }
         let mut named: Vec<_> = answers.iter().map(|its| its.hits[i].id).collect();
@@ -159,13 +167,12 @@ fn is_astray(geometry: &Geometry, ray: &Ray, hit: &Hit) -> bool {
 #[expect(clippy::print_stdout, reason = "the table is what the run is for")]
 pub(crate) fn print(title: &str, rows: &[Row]) {
     let numbers = |row: &Row| {
-        let Row { rays, hits, disputed, judged, unlawful, leaks, any_hit_differs, astray, .. } =
-            row;
+        let Row { rays, hits, disputed, judged, unlawful, leaks, farthest, .. } = row;
+        let Row { any_hit_differs, way_matters, astray, .. } = row;
         let counts = row.classes.map(|n| format!("{n:>11}")).concat();
         format!(
             "{rays:>9} {hits:>9} {disputed:>8} {judged:>8}{counts} {unlawful:>8} {leaks:>6} {any_hit_differs:>7} \
-             {astray:>6} {:>7.2}",
-            row.farthest
+             {way_matters:>5} {astray:>6} {farthest:>7.2}"
         )
     };
     for alike in rows.chunk_by(|a, b| numbers(a) == numbers(b)) {
@@ -180,8 +187,7 @@ pub(crate) fn print(title: &str, rows: &[Row]) {
 pub(crate) fn print_head() {
     let classes = Class::ALL.map(|(name, _)| format!("{name:>11}")).concat();
     println!(
-        "{:<23} {:<28}{:>9} {:>9} {:>8} {:>8}{classes} {:>8} {:>6} {:>7} {:>6} {:>7}",
-        "",
+        "{:52}{:>9} {:>9} {:>8} {:>8}{classes} {:>8} {:>6} {:>7} {:>5} {:>6} {:>7}",
         "",
         "rays",
         "hits",
@@ -190,6 +196,7 @@ pub(crate) fn print_head() {
         "unlawful",
         "leaks",
         "any hit",
+        "way",
         "astray",
         "of band"
     );
