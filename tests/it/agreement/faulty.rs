@@ -39,7 +39,7 @@ impl Faulty {
     }
 
     fn altered<F: HitFilter>(&self, ray: &Ray, filter: &F, hit: Hit, is_single: bool) -> Hit {
-        let now_and_then = ray.id % 7 == 0;
+        let now_and_then = ray.id.is_multiple_of(7);
         let named = |id: PrimitiveId| resolve(&self.geometry, ray, id);
         match self.fault {
             Fault::DropsEdges if hit.u.min(hit.v).min(1.0 - hit.u - hit.v) < 1e-3 => Hit::MISS,
@@ -78,7 +78,7 @@ impl Accelerator for Faulty {
         let mut hits = vec![Hit::MISS; rays.len()];
         self.closest(rays, filter, &mut hits);
         for ((ray, blocked), hit) in rays.iter().zip(blocked).zip(hits) {
-            let is_lost = self.fault == Fault::LosesShadows && ray.id % 7 == 0;
+            let is_lost = self.fault == Fault::LosesShadows && ray.id.is_multiple_of(7);
             *blocked = hit.is_hit() && !is_lost;
         }
     }

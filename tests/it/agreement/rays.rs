@@ -107,11 +107,11 @@ impl Draw<'_> {
     fn along_axes(&mut self, i: usize) -> Ray {
         let (mut origin, [corner, _]) = (self.anywhere(), self.edge());
         let mut direction = Vec3::ZERO;
-        direction[i % 3] = if i % 2 == 0 { 1.0 } else { -1.0 };
-        if i % 4 == 0 {
+        direction[i % 3] = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+        if i.is_multiple_of(4) {
             direction[(i + 1) % 3] = self.rng.unit() - 0.5;
         }
-        if i % 5 != 0 {
+        if !i.is_multiple_of(5) {
             // The origin is where the line through the corner begins: exactly so along one axis.
             let back = (origin - corner)[i % 3].abs();
             origin = corner - direction * back;

@@ -148,7 +148,7 @@ fn instances() -> Arc<Geometry> {
     let turn = DMat3::from_rotation_y(0.7) * DMat3::from_diagonal(DVec3::new(1.0, 2.0, 0.5));
     let place = |i: u32| {
         let translation = DVec3::new(f64::from(i % 4), f64::from(i / 4), 0.3 * f64::from(i));
-        let matrix3 = if i % 3 == 0 { DMat3::IDENTITY } else { turn };
+        let matrix3 = if i.is_multiple_of(3) { DMat3::IDENTITY } else { turn };
         Instance::new(i % 2, Affine::from_f64(&DAffine3 { matrix3, translation }))
     };
     // The last two in the same place.
