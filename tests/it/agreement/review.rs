@@ -5,6 +5,7 @@ use super::scenes::Holes;
 use glint::accel::oracle::{Class, Judgement, Oracle};
 use glint::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use glint::sampling::CounterRng;
+use rayon::prelude::*;
 
 /// How one backend, asked in one way, did.
 #[derive(Clone)]
@@ -120,30 +121,32 @@ pub(crate) fn review(
     let ours = answers.iter().find(|a| a.ours);
     let mut rng = CounterRng::new(0);
     let share = sample as f32 / rays.len() as f32;
+    // Rays to be judged, each with the triangles that were named.
+    let mut cases = Vec::new();
     for (i, ray) in rays.iter().enumerate() {
         for (row, its) in rows.iter_mut().zip(answers) {
             row.any_hit_differs += usize::from(its.blocked[i] != its.hits[i].is_hit());
-            let is_other = ours.is_some_and(|ours| its.ours && its.hits[i] != ours.hits[i]);
-            if is_other {
+            row.astray += usize::from(is_astray(geometry, ray, &its.hits[i]));
+            if let Some(ours) = ours.filter(|ours| its.ours && its.hits[i] != ours.hits[i]) {
                 row.way_matters += 1;
-                let both = ours.map(|ours| [ours.hits[i], its.hits[i]]);
+                let both = [ours.hits[i], its.hits[i]];
                 row.first.get_or_insert_with(|| format!("{ray:?}: {both:?}"));
             }
-            row.astray += usize::from(is_astray(geometry, ray, &its.hits[i]));
         }
         let mut named: Vec<_> = answers.iter().map(|its| its.hits[i].id).collect();
         named.sort_unstable();
         named.dedup();
         let is_disputed = named.len() > 1;
-        if !is_disputed && rng.unit() >= share {
-            continue;
-        }
-        for id in named {
-            let judgement = oracle.judge(ray, &Holes, id);
-            let theirs = rows.iter_mut().zip(answers).filter(|(_, its)| its.hits[i].id == id);
-            theirs.for_each(|(row, _)| row.note(ray, id, &judgement));
-        }
         rows.iter_mut().for_each(|row| row.disputed += usize::from(is_disputed));
+        if is_disputed || rng.unit() < share {
+            cases.extend(named.into_iter().map(|id| (i, id)));
+        }
+    }
+    let judge = |&(i, id): &(usize, PrimitiveId)| oracle.judge(&rays[i], &Holes, id);
+    let judgements: Vec<_> = cases.par_iter().map(judge).collect();
+    for ((i, id), judgement) in cases.into_iter().zip(judgements) {
+        let theirs = rows.iter_mut().zip(answers).filter(|(_, its)| its.hits[i].id == id);
+        theirs.for_each(|(row, _)| row.note(&rays[i], id, &judgement));
     }
     rows
 }
