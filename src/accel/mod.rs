@@ -10,6 +10,7 @@ mod brute;
 pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
+pub mod oracle;
 mod resolve;
 
 pub use brute::BruteForce;

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod accel;
+mod agreement;
 mod allocation;
 mod backends;
 mod bench;
@@ -24,6 +25,7 @@ mod load_mutations;
 mod load_options;
 mod mtl;
 mod obj;
+mod oracle;
 mod scene_file;
 mod scene_file_errors;
 mod statistics;
