@@ -13,4 +13,6 @@ pub use aabb::Aabb;
 pub use buffer::Buffer;
 pub use mesh::{Geometry, Instance, Object, TriangleMesh};
 pub use ray::{Hit, NONE, PrimitiveId, Ray};
-pub use triangle::{TriangleHit, intersect_triangle, offset_distance};
+pub use triangle::{
+    TriangleHit, intersect_triangle, offset_distance, triangle_distance, within_box,
+};

@@ -29,6 +29,8 @@ pub struct TriangleHit {
 /// The inputs are `f32` values (or `f64` images of them under an instance), so differences and products
 /// below are exact or carry relative errors near 1e-16: after rounding, t, u and v are the true values but
 /// for half a unit in the last place, except for slivers whose height is below 1e-9 of their length.
+/// A ray that passes by within a backend's rounding may meet the plane far from a triangle that it sees nearly edge-on: t is
+/// then where it passes the triangle's box.
 /// A triangle seen edge-on or without area, which only a backend's rounding can find, is hit at its
 /// first vertex, and its normal faces the ray if it has none.
 #[inline(always)]
@@ -44,7 +46,7 @@ pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> TriangleHit {
     if det != 0.0 && det.is_finite() {
         let inverse = 1.0 / det;
         let q = s.cross(direction);
-        t = (s.dot(area_vector) * inverse) as f32;
+        t = within_box(s.dot(area_vector) * inverse, ray, vertices) as f32;
         u = ((ac.dot(q) * inverse) as f32).clamp(0.0, 1.0);
         // Not `clamp`, whose check of its bounds would keep loops over this from being vectorised.
         v = ((-ab.dot(q) * inverse) as f32).max(0.0).min(1.0 - u);
@@ -60,6 +62,43 @@ pub fn intersect_triangle(ray: &Ray, vertices: &[DVec3; 3]) -> TriangleHit {
     };
     let point = (a + ab * f64::from(u) + ac * f64::from(v)).as_vec3();
     TriangleHit { t: t.max(ray.t_min), u, v, point, normal }
+}
+
+/// The parameter of [`intersect_triangle`] before it is rounded, which may be before the ray's start; nothing if the triangle is
+/// seen edge-on.
+pub fn triangle_distance(ray: &Ray, vertices: &[DVec3; 3]) -> Option<f64> {
+    let [a, b, c] = *vertices;
+    let area_vector = (b - a).cross(c - a);
+    let det = -ray.direction.as_dvec3().dot(area_vector);
+    let t = (ray.origin.as_dvec3() - a).dot(area_vector) * (1.0 / det);
+    (det != 0.0 && det.is_finite()).then(|| within_box(t, ray, vertices))
+}
+
+/// `t`, but not outside of where the ray passes the triangle's box, made wider by what rounding can displace
+/// a triangle by that a backend finds (16 round-offs, as for offsets below): in there what is truly hit is anyway.
+#[inline(always)]
+pub fn within_box(t: f64, ray: &Ray, vertices: &[DVec3; 3]) -> f64 {
+    let [a, b, c] = vertices.map(|v| v.to_array());
+    let (origin, direction) =
+        (ray.origin.as_dvec3().to_array(), ray.direction.as_dvec3().to_array());
+    // Not `max` and `min`, whose care for what is not a number costs as much again.
+    let larger = |x: f64, y: f64| if x > y { x } else { y };
+    let smaller = |x: f64, y: f64| if x < y { x } else { y };
+    let largest = |v: [f64; 3]| larger(larger(v[0].abs(), v[1].abs()), v[2].abs());
+    let size = larger(larger(largest(a), largest(b)), largest(c)) + largest(origin);
+    let margin = f64::from(16.0 * UNIT_ROUNDOFF) * size;
+    let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let inverse = 1.0 / direction[axis];
+        let low = smaller(smaller(a[axis], b[axis]), c[axis]) - margin - origin[axis];
+        let high = larger(larger(a[axis], b[axis]), c[axis]) + margin - origin[axis];
+        let (p, q) = (low * inverse, high * inverse);
+        // Planes along the ray are nowhere or everywhere.
+        let follows = direction[axis] != 0.0;
+        enter = if follows { larger(enter, smaller(p, q)) } else { enter };
+        leave = if follows { smaller(leave, larger(p, q)) } else { leave };
+    }
+    larger(enter, smaller(leave, t))
 }
 
 /// How far along the unit geometric normal a ray that leaves `point` on the triangle must start, so

@@ -28,11 +28,6 @@ fn rays_of(kind: Kind, scene: &Scene) -> usize {
     effort(1050, if scene.is_ordinary { full } else { full / 10 })
 }
 
-/// Of so many rays one may be answered otherwise by other instructions. It should be none. But a backend prunes boxes by
-/// distances, and a triangle without area, or under an instance, or seen edge-on and hit just past its edge, can
-/// have a distance that is smaller than that at which its box begins: then the order of visits decides.
-const RAYS_FOR_ONE_WAY: usize = 5000;
-
 /// Adds rows for the same backends.
 fn add(total: &mut Vec<Row>, rows: &[Row]) {
     if total.is_empty() {
@@ -44,7 +39,7 @@ fn add(total: &mut Vec<Row>, rows: &[Row]) {
 
 /// Wherever two answers differ, and on a sample of the rest (600 rays a scene, 10 000 in the full tier), the in-house
 /// BVH says what is true, but for what the rounding of its kernel can do at silhouettes; its any hits are closest hits, and
-/// neither instructions nor company change a bit, with the exception above. Embree has promised nothing of the kind: it is
+/// neither instructions nor company change a bit. Embree has promised nothing of the kind: it is
 /// counted, and right on 99 of 100 rays in ordinary scenes.
 #[test]
 fn the_in_house_bvh_is_right_wherever_backends_differ() {
@@ -78,12 +73,7 @@ fn the_in_house_bvh_is_right_wherever_backends_differ() {
     print("all", &total);
     assert!(complaints.is_empty(), "{complaints:#?}");
     for row in &total {
-        assert!(
-            row.way_matters <= row.rays / RAYS_FOR_ONE_WAY,
-            "{} {:?}",
-            row.way_matters,
-            row.first
-        );
+        assert_eq!(row.way_matters, 0, "{:?}", row.first);
     }
     assert!(total.iter().all(|row| row.rays >= effort(100_000, 10_000_000)));
 }

@@ -12,7 +12,7 @@ use crate::math::DVec3;
 impl Bvh {
     /// The corners of a triangle in a leaf, as [`crate::geometry::Geometry::world_vertices()`] gives them.
     #[inline(always)]
-    fn vertices(&self, found: Found) -> ([DVec3; 3], f32) {
+    pub(super) fn vertices(&self, found: Found) -> ([DVec3; 3], f32) {
         let corners = self.hierarchy.block(found.leaf).vertices(found.lane as usize);
         self.geometry.placed_vertices(corners, found.instance)
     }

@@ -30,7 +30,8 @@ impl Block {
         let mut block = Self::zeroed();
         for lane in 0..SIZE {
             let triangle = triangles[if lane < triangles.len() { lane } else { 0 }];
-            block.triangles[lane] = if lane < triangles.len() { triangle } else { triangle | ABSENT };
+            block.triangles[lane] =
+                if lane < triangles.len() { triangle } else { triangle | ABSENT };
             for (of_vertex, corner) in block.corners.iter_mut().zip(meshes.vertices(triangle)) {
                 for (axis, lanes) in of_vertex.iter_mut().enumerate() {
                     lanes[lane] = corner[axis];

@@ -31,10 +31,10 @@ use hierarchy::Hierarchy;
 use kernel::Count;
 use node::Reference;
 use slot::Found;
-use walk::Batch;
 use std::cell::Cell;
 use std::sync::Arc;
 use std::time::Instant;
+use walk::Batch;
 
 /// The in-house hierarchy over a geometry.
 pub struct Bvh {
@@ -70,9 +70,15 @@ impl Bvh {
         let steps = Cell::new(Steps::default());
         let (bvh, answers, steps) = (self, &mut Ignored, &steps);
         if any {
-            kernel::dispatch(Count { task: Batch::<_, _, true> { bvh, rays, filter, answers }, steps });
+            kernel::dispatch(Count {
+                task: Batch::<_, _, true> { bvh, rays, filter, answers },
+                steps,
+            });
         } else {
-            kernel::dispatch(Count { task: Batch::<_, _, false> { bvh, rays, filter, answers }, steps });
+            kernel::dispatch(Count {
+                task: Batch::<_, _, false> { bvh, rays, filter, answers },
+                steps,
+            });
         }
         steps.get()
     }

@@ -1,9 +1,10 @@
 //! A ray prepared for boxes.
 //!
 //! Boxes are made wider by more than all rounding errors of the box test and of the triangle test behind it: a
-//! triangle that the edge test would accept is never missed. With u = 2^-24, origin o, and p the largest coordinate
-//! of the tree, both in the largest norm: plane * r - origin * r is off by at most 3u (p + o) |r|, the reciprocal r by
-//! u, and the edge test displaces a corner by at most 8u (p + o) (see `woop`). Planes are moved by 16u (p + o).
+//! triangle that the edge test accepts is never missed, and is never nearer than where the ray enters the box. With
+//! u = 2^-24, origin o, and p the largest coordinate of the tree, both in the largest norm: base + number * step is off
+//! by at most 5u (p + o) |r|, the reciprocal r by u, the edge test displaces a corner by at most 6u (p + o) (see `woop`),
+//! a ray mapped into an object is rounded twice, and the distance once. Planes are moved by 32u (p + o).
 
 use super::node::WIDTH;
 use crate::math::{UNIT_ROUNDOFF, Vec4};
@@ -23,7 +24,8 @@ pub(super) struct BoxRay {
 }
 
 impl BoxRay {
-    /// For a tree whose largest coordinate is `size`. Of origin and direction the fourth elements mean nothing.
+    /// `size` is the sum of the largest coordinates of tree and origin. Of origin and direction the fourth elements mean
+    /// nothing.
     #[inline(always)]
     pub(super) fn new(origin: Vec4, direction: Vec4, size: f32) -> Self {
         // Finite even along an axis: the products must not be 0 times infinity.
@@ -31,8 +33,7 @@ impl BoxRay {
         let is_small = direction.abs().cmplt(SMALLEST);
         let finite = Vec4::select(is_small, SMALLEST.copysign(direction), direction);
         let reciprocal = Vec4::ONE / finite;
-        let largest = origin.with_w(0.0).abs().max_element() + size;
-        let margin = reciprocal.abs() * (16.0 * UNIT_ROUNDOFF * largest);
+        let margin = reciprocal.abs() * (32.0 * UNIT_ROUNDOFF * size);
         let offset = origin * reciprocal;
         const { assert!(WIDTH == 16) };
         // The sign of the reciprocal times the width.

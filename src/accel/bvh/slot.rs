@@ -48,7 +48,7 @@ pub(super) struct Slot {
     pub(super) references: [u32; ROOM],
     pub(super) entries: [f32; ROOM],
     /// An odd number of cache lines from slot to slot: they do not fall on the same places of the cache.
-    unused: [u32; 4],
+    unused: [u32; 3],
 }
 
 /// A triangle that the ray hits, or none.
@@ -171,12 +171,19 @@ impl Slot {
         self.prepare(ray.origin, ray.direction, hierarchy.world_size);
     }
 
+    /// The ray's line in the space in which it is.
+    pub(super) fn mapped(&self) -> Ray {
+        let ([ox, oy, oz, _], [dx, dy, dz, _]) = (self.origin, self.direction);
+        Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz))
+    }
+
     /// For a tree whose largest coordinate is `size`.
     #[inline(always)]
     pub(super) fn prepare(&mut self, origin: Vec3, direction: Vec3, size: f32) {
         let (origin, direction) = (origin.extend(0.0), direction.extend(0.0));
         (self.origin, self.direction) = (origin.to_array(), direction.to_array());
+        let size = origin.abs().max_element() + size;
         self.boxes = BoxRay::new(origin, direction, size);
-        self.shear = Shear::new(&self.origin, &self.direction);
+        self.shear = Shear::new(&self.origin, &self.direction, size);
     }
 }

@@ -9,7 +9,8 @@ use super::kernel::{Distances, Inside, Kernel};
 use super::node::Reference;
 use super::slot::{Found, Slot};
 use crate::accel::{HitFilter, resolve};
-use crate::geometry::{NONE, Ray};
+use crate::geometry::{NONE, Ray, triangle_distance, within_box};
+use crate::math::Vec3;
 
 /// A batch of queries. `ANY`: the first hit is enough.
 pub(super) struct Batch<'a, F, A, const ANY: bool> {
@@ -44,29 +45,33 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
         let Inside { inside, unsure } = slot.inside;
         let top = slot.top as usize;
         let is_better = if slot.instance == NONE && unsure == 0 {
-            let Distances { t, within, edge_on } = kernel.distances(slot, bvh.hierarchy.block(slot.next));
-            let nearer = inside & (within | edge_on);
+            let Distances { t, within } = kernel.distances(slot, bvh.hierarchy.block(slot.next));
+            let nearer = inside & within;
             let lane = nearer.trailing_zeros() & (SIZE as u32 - 1);
             let distance = t[lane as usize];
             // One at most, and not at the same distance as the best.
-            let is_simple = nearer & (nearer.wrapping_sub(1) | edge_on) == 0 && distance != slot.limit;
+            let is_simple = nearer & nearer.wrapping_sub(1) == 0 && distance != slot.limit;
             if is_simple && !(F::REFUSES && bvh.has_filters) {
                 let found = Found { leaf: slot.next, lane, instance: NONE };
                 let is_better = nearer != 0;
                 slot.limit = if is_better { distance } else { slot.limit };
                 slot.best = if is_better { found } else { slot.best };
                 is_better
-            } else if edge_on & nearer == 0 {
-                self.consider(slot, nearer, &t)
             } else {
-                self.consider_with_care(slot, inside, unsure)
+                self.consider(slot, nearer, &t)
             }
         } else {
             self.consider_with_care(slot, inside, unsure)
         };
         match ANY {
             // Down to the reference that ends it.
-            true => if is_better { 1 } else { top },
+            true => {
+                if is_better {
+                    1
+                } else {
+                    top
+                }
+            }
             false => kernel.prune(slot),
         }
     }
@@ -103,8 +108,7 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
         is_better
     }
 
-    /// [`Self::consider`] where it is not as simple: in instances, where products leave the range of `f32`, and
-    /// edge-on.
+    /// [`Self::consider`] where it is not as simple: in instances, and at edges, where exact products decide.
     #[inline(never)]
     fn consider_with_care(&self, slot: &mut Slot, inside: u32, unsure: u32) -> bool {
         let (bvh, rays) = (self.bvh, self.rays);
@@ -113,9 +117,20 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
         let mut nearer = 0;
         for lane in (0..SIZE).filter(|lane| inside >> lane & 1 != 0) {
             if unsure >> lane & 1 == 0 || slot.shear.is_inside(block, lane) {
-                let id =
-                    bvh.id(Found { leaf: slot.next, lane: lane as u32, instance: slot.instance });
-                t[lane] = resolve(&bvh.geometry, &rays[slot.ray as usize], id).t;
+                let found = Found { leaf: slot.next, lane: lane as u32, instance: slot.instance };
+                let (vertices, _) = bvh.vertices(found);
+                // Seen edge-on it has no place where it is hit.
+                let Some(at) = triangle_distance(&rays[slot.ray as usize], &vertices) else {
+                    continue;
+                };
+                // Nor is it nearer than its box, as the boxes of the hierarchy are seen.
+                let is_placed = slot.instance != NONE;
+                let at = if is_placed {
+                    within_box(at, &slot.mapped(), &block.vertices(lane).map(Vec3::as_dvec3))
+                } else {
+                    at
+                };
+                t[lane] = at as f32;
                 nearer |= u32::from(t[lane] > slot.t_min && t[lane] <= slot.limit) << lane;
             }
         }

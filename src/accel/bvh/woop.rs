@@ -1,13 +1,20 @@
-//! The watertight edge test of a ray and four triangles.
+//! The watertight edge test of a ray and some triangles.
 //!
 //! Source: S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. The ray is sheared
 //! onto the z axis; then a triangle is hit where the origin is inside its projection. A corner's projection depends on
-//! that corner alone, and an edge function has the same bits for both triangles at an edge, but for the sign. Rounding
-//! is monotonic, so the sign of the difference of two rounded products is right or the difference is 0 (without fused
-//! multiply-add, which would break that); and 0 counts as inside: no ray passes between two triangles.
-//! Their second test, in double precision, is needed only where products leave the range of `f32`.
+//! that corner alone, and an edge function is, with exact products, the same for both triangles at an edge but for the sign:
+//! no ray passes between two triangles. 0 counts as inside.
+//!
+//! Edge functions are computed in `f32` first. Rounding is monotonic, so the sign of the difference of two rounded
+//! products is that of the exact ones, or the difference is 0 (without fused multiply-add, which would break that).
+//! Where they are certain, the ray is inside of the true triangle too: with u = 2^-24, and D the largest
+//! coordinate of tree and origin together, a projected corner is off by 6u D in each coordinate, 8u D if the ray was mapped into an
+//! object. So p_x q_y - p_y q_x is off by 8u D (|p_x| + |p_y| + |q_x| + |q_y|), and by 4u D of the same sum for its own
+//! rounding. The rest, edges nearer than 16u D of the sum over all corners, is asked again with exact products;
+//! and so is what leaves the range of `f32`.
 
 use super::block::{Block, SIZE};
+use crate::math::UNIT_ROUNDOFF;
 use bytemuck::{Pod, Zeroable};
 
 /// What is the same for all triangles.
@@ -20,15 +27,21 @@ pub(super) struct Shear {
     pub(super) shear: [f32; 2],
     /// Axes: the last is the one along which the ray runs most.
     pub(super) axes: [u32; 3],
+    /// An edge function is certain beyond this times the sum of the sizes of all projected coordinates of its triangle.
+    pub(super) error: f32,
 }
 
-/// Edge functions whose sum is outside of this range may have lost their signs.
-pub(super) const TRUSTED: std::ops::RangeInclusive<f32> = 1e-24..=1e36;
+/// An edge function that is not larger may have lost more to underflow.
+pub(super) const SMALLEST: f32 = 1e-36;
+
+/// Beyond it edge functions may overflow.
+pub(super) const LARGEST: f32 = 1e36;
 
 impl Shear {
-    /// For a ray of non-zero direction. Of origin and direction the fourth elements mean nothing.
+    /// For a ray of non-zero direction, and a tree such that no coordinate of it or the origin is larger than half of `size`.
+    /// Of origin and direction the fourth elements mean nothing.
     #[inline(always)]
-    pub(super) fn new(origin: &[f32; 4], direction: &[f32; 4]) -> Self {
+    pub(super) fn new(origin: &[f32; 4], direction: &[f32; 4], size: f32) -> Self {
         let [x, y, z, _] = direction.map(f32::abs);
         let largest = if z > x.max(y) { 2 } else { usize::from(y > x) };
         // Which of the other two is first turns all signs over, which the test does not see.
@@ -40,6 +53,7 @@ impl Shear {
             origin: [along(origin, 0), along(origin, 1), along(origin, 2)],
             shear: [along(direction, 0) / depth, along(direction, 1) / depth],
             axes,
+            error: 16.0 * UNIT_ROUNDOFF * size,
         }
     }
 
@@ -49,7 +63,7 @@ impl Shear {
         &corner[self.axes[i].min(2) as usize]
     }
 
-    /// Whether the ray's line meets the triangle in that lane, whatever its size: with exact products.
+    /// Whether the ray's line meets the triangle in that lane, with exact products.
     #[cold]
     pub(super) fn is_inside(&self, block: &Block, lane: usize) -> bool {
         let [a, b, c] = &block.corners;

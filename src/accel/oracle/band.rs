@@ -16,13 +16,7 @@
 //! corners to the world round to 53 bits; that counts where a map squeezes a thousandfold or places something
 //! small far away, and is bounded for the ray at hand (`KernelRay::in_object`).
 //!
-//! What remains is the sign of p_x q_y - p_y q_x, of rounded products: it is right, or both products are the same
-//! number and the kernel counts the ray as inside. Then they were of one sign and at most u (|p_x q_y| + |p_y q_x|)
-//! apart, and p and q are seen from the ray in opposite quadrants or in the same. In opposite ones the ray passes
-//! between them, within that by |p_x| + |q_x| + |p_y| + |q_y|, so within u / 2 of the largest of the four, which is
-//! at most 2 M: **one ulp more**. In the same one their directions differ by no more than u: where that lets a
-//! triangle in whose edges are farther away, all its corners lie within 2 u of one direction, a needle that points at the ray.
-//! The kernel may find such a needle; here it is not excused.
+//! What remains is the sign of p_x q_y - p_y q_x, and that is exact.
 //!
 //! Now move the corners steadily from where they are to where the kernel puts them. If the ray is inside before
 //! and outside after, or the other way round, some edge has passed over it. That edge's ends have moved by
@@ -41,7 +35,7 @@ pub struct EdgeDistance {
     /// In ulps (2^-24) of the largest coordinate of the edge's ends relative to the ray's origin, both in the space
     /// of the mesh.
     pub ulps: f64,
-    /// How many of them the rounding of the in-house kernel can be worth: 7, and 9 or more under an instance.
+    /// How many of them the rounding of the in-house kernel can be worth: 6, and 8 or more under an instance.
     pub band: f64,
 }
 
@@ -82,7 +76,7 @@ impl KernelRay {
         Self {
             origin: ray.origin.as_dvec3(),
             direction: ray.direction.as_dvec3(),
-            per_size: 7.0 * MORE * U,
+            per_size: 6.0 * MORE * U,
             fixed: SUBNORMAL,
         }
     }
@@ -119,7 +113,7 @@ impl KernelRay {
         Self {
             origin,
             direction,
-            per_size: 9.0 * MORE * U + 2.0 * MORE * turned + 2.0 * stretch,
+            per_size: 8.0 * MORE * U + 2.0 * MORE * turned + 2.0 * stretch,
             fixed: 3.0 * SUBNORMAL
                 + 2.0 * MORE * (U * size + origin_off)
                 + 2.0 * (stretch * size + translated),

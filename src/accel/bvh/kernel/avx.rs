@@ -3,7 +3,7 @@
 use super::{Distances, Inside};
 use crate::accel::bvh::block::{Block, SIZE};
 use crate::accel::bvh::slot::Slot;
-use crate::accel::bvh::woop::{Shear, TRUSTED};
+use crate::accel::bvh::woop::{LARGEST, SMALLEST, Shear};
 #[allow(clippy::wildcard_imports, reason = "the names say where they are from")]
 use std::arch::x86_64::*;
 
@@ -25,8 +25,7 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
     let (ax, ay) = project!(0);
     let (bx, by) = project!(1);
     let (cx, cy) = project!(2);
-    let edge =
-        |px, py, qx, qy| _mm256_sub_ps(_mm256_mul_ps(px, qy), _mm256_mul_ps(py, qx));
+    let edge = |px, py, qx, qy| _mm256_sub_ps(_mm256_mul_ps(px, qy), _mm256_mul_ps(py, qx));
     let (u, v, w) = (edge(cx, cy, bx, by), edge(ax, ay, cx, cy), edge(bx, by, ax, ay));
     // The signs of all three; what is not a number has none, and is not trusted either.
     let zero = _mm256_setzero_ps();
@@ -38,11 +37,20 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
     let absent = load8(bytemuck::must_cast_ref(&block.triangles));
     let outside = _mm256_or_ps(_mm256_and_ps(below, above), absent);
     let inside = !_mm256_movemask_ps(outside) as u32 & 0xff;
-    let size = |edge| _mm256_andnot_ps(_mm256_set1_ps(-0.0), edge);
-    let sum = _mm256_add_ps(_mm256_add_ps(size(u), size(v)), size(w));
+    // Certain are edges larger than their error, and none that may have left the range of `f32`.
+    let size = |x| _mm256_andnot_ps(_mm256_set1_ps(-0.0), x);
+    let sum = |a, b| _mm256_add_ps(a, b);
+    let a = sum(size(ax), size(ay));
+    let corners = sum(sum(a, sum(size(bx), size(by))), sum(size(cx), size(cy)));
+    let error = _mm256_max_ps(
+        _mm256_mul_ps(corners, _mm256_set1_ps(shear.error)),
+        _mm256_set1_ps(SMALLEST),
+    );
+    let least = _mm256_min_ps(_mm256_min_ps(size(u), size(v)), size(w));
+    let all = sum(sum(size(u), size(v)), size(w));
     let sure = _mm256_and_ps(
-        _mm256_cmp_ps::<_CMP_GE_OQ>(sum, _mm256_set1_ps(*TRUSTED.start())),
-        _mm256_cmp_ps::<_CMP_LE_OQ>(sum, _mm256_set1_ps(*TRUSTED.end())),
+        _mm256_cmp_ps::<_CMP_GT_OQ>(least, error),
+        _mm256_cmp_ps::<_CMP_LT_OQ>(all, _mm256_set1_ps(LARGEST)),
     );
     Inside { inside, unsure: inside & !(_mm256_movemask_ps(sure) as u32) }
 }
@@ -60,12 +68,11 @@ fn along<'a>(shear: &Shear, corner: &'a [[f32; SIZE]; 3], i: usize) -> &'a [f32;
 #[target_feature(enable = "avx")]
 #[inline]
 pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
-    let mut all = Distances { t: [0.0; SIZE], within: 0, edge_on: 0 };
+    let mut all = Distances { t: [0.0; SIZE], within: 0 };
     for half in 0..2 {
         let first = 4 * half;
         let all_lanes = |value: f32| _mm256_cvtps_pd(_mm_set1_ps(value));
-        let corner =
-            |vertex: usize, axis: usize| to_f64(&block.corners[vertex][axis], first);
+        let corner = |vertex: usize, axis: usize| to_f64(&block.corners[vertex][axis], first);
         let sub = |a, b| _mm256_sub_pd(a, b);
         let mul = |a, b| _mm256_mul_pd(a, b);
         let add = |a, b| _mm256_add_pd(a, b);
@@ -83,20 +90,15 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
         let [dx, dy, dz, _] = slot.direction;
         let minus_det = dot(all_lanes(dx), all_lanes(dy), all_lanes(dz));
         let [ox, oy, oz, _] = slot.origin;
-        let height = dot(sub(all_lanes(ox), a[0]), sub(all_lanes(oy), a[1]), sub(all_lanes(oz), a[2]));
+        let height =
+            dot(sub(all_lanes(ox), a[0]), sub(all_lanes(oy), a[1]), sub(all_lanes(oz), a[2]));
         // 1 / -x is -(1 / x), to the bit.
         let t = _mm256_cvtpd_ps(mul(height, _mm256_div_pd(_mm256_set1_pd(-1.0), minus_det)));
         let beyond = _mm_cmpgt_ps(t, _mm_set1_ps(slot.t_min));
         let within = _mm_and_ps(beyond, _mm_cmple_ps(t, _mm_set1_ps(slot.limit)));
-        let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), minus_det);
-        let regular = _mm256_and_pd(
-            _mm256_cmp_pd::<_CMP_GT_OQ>(size, _mm256_setzero_pd()),
-            _mm256_cmp_pd::<_CMP_LT_OQ>(size, _mm256_set1_pd(f64::INFINITY)),
-        );
         // SAFETY: writes four of the eight values.
         unsafe { _mm_storeu_ps(all.t.as_mut_ptr().wrapping_add(first), t) };
         all.within |= (_mm_movemask_ps(within) as u32) << first;
-        all.edge_on |= (!_mm256_movemask_pd(regular) as u32 & 15) << first;
     }
     all
 }

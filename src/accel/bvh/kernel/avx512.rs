@@ -81,7 +81,9 @@ fn open<const ORDERED: bool>(slot: &mut Slot, node: &Node) -> usize {
     store4(&mut grid.near_base, 0, _mm_castps_si128(near_base));
     store4(&mut grid.far_base, 0, _mm_castps_si128(far_base));
     // SAFETY: no instruction at all; that there could be one that reads it keeps the grid in the memory.
-    unsafe { std::arch::asm!("/* {0} */", in(reg) &raw const grid, options(nostack, preserves_flags)) };
+    unsafe {
+        std::arch::asm!("/* {0} */", in(reg) &raw const grid, options(nostack, preserves_flags))
+    };
     let mut entry = _mm512_set1_ps(slot.t_min);
     let mut exit = _mm512_set1_ps(slot.limit);
     for axis in 0..3 {
@@ -165,9 +167,7 @@ fn distances(slot: &Slot, block: &Block) -> Distances {
     let t = _mm512_cvtpd_ps(mul(height, _mm512_div_pd(_mm512_set1_pd(-1.0), minus_det)));
     let beyond = _mm256_cmp_ps_mask::<_CMP_GT_OQ>(t, _mm256_set1_ps(slot.t_min));
     let within = _mm256_mask_cmp_ps_mask::<_CMP_LE_OQ>(beyond, t, _mm256_set1_ps(slot.limit));
-    // Zeros, infinities and what is not a number.
-    let edge_on = _mm512_fpclass_pd_mask::<0b1001_1111>(minus_det);
-    let mut distances = Distances { t: [0.0; SIZE], within: within.into(), edge_on: edge_on.into() };
+    let mut distances = Distances { t: [0.0; SIZE], within: within.into() };
     // SAFETY: writes eight values where there are eight.
     unsafe { _mm256_storeu_ps(distances.t.as_mut_ptr(), t) };
     distances

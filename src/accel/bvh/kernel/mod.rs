@@ -69,8 +69,8 @@ pub(super) trait Kernel: Copy {
         plain::inside(shear, block)
     }
 
-    /// Distances to the planes of triangles whose edges the ray is inside, as [`crate::accel::resolve()`] has them, and
-    /// which of them could be the hit.
+    /// Distances of triangles whose edges the ray is certainly inside, as [`crate::accel::resolve()`] has them, and which
+    /// of them could be the hit.
     #[inline(always)]
     fn distances(self, slot: &Slot, block: &Block) -> Distances {
         plain::distances(slot, block)
@@ -83,7 +83,7 @@ pub(super) trait Kernel: Copy {
 pub(super) struct Inside {
     /// Whether the ray's line meets it, edges included.
     pub(super) inside: u32,
-    /// Whether that is to be asked of [`Shear::is_inside`]: some of the above.
+    /// Those of them of which that is not certain: to be asked of [`Shear::is_inside`].
     pub(super) unsure: u32,
 }
 
@@ -93,6 +93,4 @@ pub(super) struct Distances {
     pub(super) t: [f32; SIZE],
     /// A bit for each that is beyond the ray's start and not beyond its limit.
     pub(super) within: u32,
-    /// A bit for each that is so nearly edge-on that the rest means nothing.
-    pub(super) edge_on: u32,
 }

@@ -4,7 +4,7 @@ use super::{Distances, Inside, Kernel};
 use crate::accel::bvh::block::{ABSENT, Block, SIZE};
 use crate::accel::bvh::node::{Node, WIDTH};
 use crate::accel::bvh::slot::{SPARE, Slot};
-use crate::accel::bvh::woop::{Shear, TRUSTED};
+use crate::accel::bvh::woop::{LARGEST, SMALLEST, Shear};
 
 /// No instructions of its own.
 #[derive(Clone, Copy)]
@@ -98,7 +98,7 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
             }
         }
     }
-    let [a, b, c] = flat;
+    let [a, b, c] = &flat;
     let (mut inside, mut sure) = (0, 0);
     for i in 0..SIZE {
         let u = c[0][i] * b[1][i] - c[1][i] * b[0][i];
@@ -107,10 +107,14 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
         // What is not a number has no sign, and is not trusted either.
         let is_front = !((u < 0.0) | (v < 0.0) | (w < 0.0));
         let is_back = !((u > 0.0) | (v > 0.0) | (w > 0.0));
+        let corners: f32 = flat.iter().map(|[x, y]| x[i].abs() + y[i].abs()).sum();
+        // Certain are edges larger than their error, and none that may have left the range of `f32`.
+        let error = (corners * shear.error).max(SMALLEST);
+        let is_certain = (u.abs() > error) & (v.abs() > error) & (w.abs() > error);
         let sum = u.abs() + v.abs() + w.abs();
         let is_present = block.triangles[i] & ABSENT == 0;
         inside |= u32::from((is_front | is_back) & is_present) << i;
-        sure |= u32::from(TRUSTED.contains(&sum)) << i;
+        sure |= u32::from(is_certain & (sum < LARGEST)) << i;
     }
     Inside { inside, unsure: inside & !sure }
 }
@@ -120,7 +124,7 @@ pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
 pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
     let (o, d) = (slot.origin.map(f64::from), slot.direction.map(f64::from));
     let mut t = [0.0; SIZE];
-    let (mut within, mut edge_on) = (0, 0);
+    let mut within = 0;
     for (i, t) in t.iter_mut().enumerate() {
         let corner = |vertex: usize, axis: usize| f64::from(block.corners[vertex][axis][i]);
         let a = [corner(0, 0), corner(0, 1), corner(0, 2)];
@@ -136,7 +140,6 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
         let height = s[0] * normal[0] + s[1] * normal[1] + s[2] * normal[2];
         *t = (height * (1.0 / det)) as f32;
         within |= u32::from((*t > slot.t_min) & (*t <= slot.limit)) << i;
-        edge_on |= u32::from(!((det.abs() > 0.0) & (det.abs() < f64::INFINITY))) << i;
     }
-    Distances { t, within, edge_on }
+    Distances { t, within }
 }
