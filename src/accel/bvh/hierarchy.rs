@@ -5,8 +5,8 @@
 //! built or traversed.
 
 use super::backend_error;
-use super::binned::{self, BinaryNode, PrimitiveBox};
 use super::block::{self, Block, Meshes, Numbers};
+use super::build::{self, BinaryNode, PrimitiveBox, Quality, build};
 use super::collapse::{WideNode, WideTree, collapse};
 use super::node::{Kind, LEAF_UNITS, NODE_UNITS, Node, Reference, UNIT, WIDTH};
 use crate::error::Result;
@@ -169,12 +169,13 @@ impl Hierarchy {
 
     /// A tree over the triangles of some meshes.
     fn add_meshes(&mut self, meshes: &[TriangleMesh]) -> Result<Tree> {
+        let tree = build(build::boxes(meshes), block::SIZE, Quality::Default);
         let meshes = Meshes::new(meshes);
-        let (tree, order) = binned::build(meshes.boxes(), block::SIZE);
         let wide = collapse(&tree);
+        let order = &tree.order;
         let leaf = |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize]);
-        let root = self.add_tree(&tree, &wide, Some(&leaf))?;
-        Ok(Tree::new(root, bounds(&tree), &wide, meshes.into_numbers()))
+        let root = self.add_tree(&tree.nodes, &wide, Some(&leaf))?;
+        Ok(Tree::new(root, bounds(&tree.nodes), &wide, meshes.into_numbers()))
     }
 
     /// The tree over the instances.
@@ -195,16 +196,16 @@ impl Hierarchy {
                 let largest = around.min.abs().max(around.max.abs()).max_element();
                 let margin = Vec3::splat(largest * 1e-6);
                 let bounds = Aabb { min: around.min - margin, max: around.max + margin };
-                boxes.push(PrimitiveBox { bounds, id });
+                boxes.push(PrimitiveBox::new(&bounds, id));
             }
         }
-        let (tree, order) = binned::build(boxes, 1);
+        let tree = build(boxes, 1, Quality::Default);
         let wide = collapse(&tree);
-        let root = self.add_tree(&tree, &wide, None::<&fn(u32, u32) -> Block>)?;
+        let root = self.add_tree(&tree.nodes, &wide, None::<&fn(u32, u32) -> Block>)?;
         let children = wide.nodes.iter().flat_map(WideNode::children);
-        let leaves = children.filter_map(|&child| leaf_range(&tree[child as usize]));
-        self.order = leaves.map(|(start, _)| order[start as usize]).collect();
-        self.instances = Tree::new(root, bounds(&tree), &wide, Numbers::new(&[]));
+        let leaves = children.filter_map(|&child| leaf_range(&tree.nodes[child as usize]));
+        self.order = leaves.map(|(start, _)| tree.order[start as usize]).collect();
+        self.instances = Tree::new(root, bounds(&tree.nodes), &wide, Numbers::new(&[]));
         Ok(())
     }
 
@@ -238,7 +239,7 @@ impl Hierarchy {
             let source = &wide.nodes[i];
             let mut boxes = [Aabb::EMPTY; WIDTH];
             for (bounds, &child) in boxes.iter_mut().zip(source.children()) {
-                *bounds = tree[child as usize].bounds;
+                *bounds = tree[child as usize].bounds();
             }
             let boxes = &boxes[..source.children().len()];
             let instances = leaf.is_none().then_some(source.leaves_before as usize);
@@ -281,12 +282,12 @@ impl Hierarchy {
 
 /// The range of primitives of a leaf.
 fn leaf_range(node: &BinaryNode) -> Option<(u32, u32)> {
-    match node.kind {
-        binned::Kind::Leaf { start, end } => Some((start, end)),
-        binned::Kind::Inner(_) => None,
+    match node.kind() {
+        build::Kind::Leaf { start, end } => Some((start, end)),
+        build::Kind::Inner(_) => None,
     }
 }
 
 fn bounds(tree: &[BinaryNode]) -> Aabb {
-    tree.first().map_or(Aabb::EMPTY, |root| root.bounds)
+    tree.first().map_or(Aabb::EMPTY, BinaryNode::bounds)
 }

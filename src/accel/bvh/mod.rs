@@ -6,9 +6,10 @@
 //! exact ties go to the smallest id. Knows nothing but `geometry`.
 #![allow(unsafe_code)]
 
-mod binned;
 mod block;
+mod build;
 mod collapse;
+mod cut;
 mod flight;
 mod hierarchy;
 mod kernel;
