@@ -16,9 +16,11 @@ use glint::math::DVec3;
 #[cfg(feature = "embree")]
 use glint::os::Isa;
 use glint::scene::{Camera, Projection};
+#[cfg(feature = "embree")]
+use glint::study::bench::Query;
 #[cfg(feature = "bvh")]
 use glint::study::bench::{BATCH, InHouse, Tracer};
-use glint::study::bench::{Query, RayKind, RaySet, RaySource};
+use glint::study::bench::{RayKind, RaySet, RaySource};
 use glint::world::World;
 
 const TRIANGLES: u64 = 200_000;

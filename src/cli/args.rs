@@ -176,7 +176,7 @@ pub(super) struct Bench {
     pub(super) quiet: bool,
 
     /// Rays of each kind; k, M and G multiply it
-    #[arg(long, value_name = "N", default_value = "262144", value_parser = count, help_heading = "Race")]
+    #[arg(long, value_name = "N", default_value = "131072", value_parser = count, help_heading = "Race")]
     pub(super) rays: u64,
     /// Kinds of rays: primary, first-bounce, deep-bounce, shadow, ambient-occlusion, random [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = named("kind of rays", &RayKind::ALL),

@@ -12,9 +12,10 @@ use glint::math::DVec3;
 use glint::os::Isa;
 use glint::scene::{Camera, Projection};
 use glint::study::bench::{
-    Contestant, Findings, InHouse, Law, Query, RayKind, RaySet, RaySource, Role, Settings, contest,
+    Contestant, Findings, InHouse, Law, RayKind, RaySet, RaySource, Role, Settings, contest,
 };
 use glint::world::World;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::Duration;
 
 fn world(kind: Kind, triangles: u64) -> World {
@@ -108,11 +109,17 @@ fn a_scene_without_room_for_some_kind_has_none_of_it() {
 struct Liar<'a> {
     backend: &'a Backend,
     lie: fn(PrimitiveId) -> Option<PrimitiveId>,
+    /// How often it is honest before.
+    honest_calls: AtomicUsize,
 }
 
 impl Accelerator for Liar<'_> {
     fn closest<F: HitFilter>(&self, rays: &[Ray], filter: &F, hits: &mut [Hit]) {
         self.backend.closest(rays, filter, hits);
+        let one_less = |calls: usize| calls.checked_sub(1);
+        if self.honest_calls.fetch_update(Relaxed, Relaxed, one_less).is_ok() {
+            return;
+        }
         for hit in hits.iter_mut().filter(|hit| hit.is_hit()) {
             *hit = (self.lie)(hit.id).map_or(Hit::MISS, |id| Hit { id, ..*hit });
         }
@@ -161,13 +168,17 @@ fn who_lies_gets_no_time_and_is_found_out() {
     let world = world(Kind::Foliage, 20_000);
     let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
     let sets = ray_sets(&world, &backend, 5000);
-    let loses = Liar { backend: &backend, lie: |id| (id.primitive % 5 != 0).then_some(id) };
-    let swaps = Liar {
+    let liar = |lie, honest_calls: usize| Liar {
         backend: &backend,
-        lie: |id| {
-            Some(PrimitiveId { primitive: id.primitive ^ u32::from(id.primitive == 77), ..id })
-        },
+        lie,
+        honest_calls: honest_calls.into(),
     };
+    let loses = liar(|id| (id.primitive % 5 != 0).then_some(id), 0);
+    let swap = |id: PrimitiveId| {
+        let primitive = id.primitive ^ u32::from(id.primitive == 77);
+        Some(PrimitiveId { primitive, ..id })
+    };
+    let swaps = liar(swap, 0);
     let contestants = [
         contestant(&backend, "honest", Law::Exact),
         contestant(&loses, "loses", Law::Exact),
@@ -206,6 +217,25 @@ fn who_lies_gets_no_time_and_is_found_out() {
 }
 
 #[test]
+fn who_is_right_when_it_is_checked_and_lies_when_it_is_timed_is_found_out() {
+    let world = world(Kind::Foliage, 5000);
+    let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
+    let sets = ray_sets(&world, &backend, 1000);
+    // The check takes 20 calls, 10 of them to warm up; here those of the last two repetitions go wrong.
+    let later = Liar { backend: &backend, lie: |_| None, honest_calls: 60.into() };
+    let contestants =
+        [contestant(&backend, "honest", Law::Exact), contestant(&later, "later", Law::Approximate)];
+    let findings = race(&world, &sets[..1], &contestants);
+    for run in findings.runs {
+        let agreement = run.agreement;
+        assert_eq!((agreement.compared, agreement.differing()), (1000, 0), "{}", run.variant);
+        let is_honest = run.variant == "honest";
+        assert_eq!(agreement.unsteady_turns == 0, is_honest);
+        assert_eq!(run.rays_per_second.is_some(), is_honest);
+    }
+}
+
+#[test]
 fn rivals_are_compared_in_the_same_repetitions() {
     let world = world(Kind::City, 5000);
     let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
@@ -239,6 +269,7 @@ fn rivals_are_compared_in_the_same_repetitions() {
 #[test]
 fn every_call_of_embrees_gives_the_answers_of_single_rays() {
     use glint::accel::embree::{BareEmbree, EmbreeAccelerator, EmbreeCall, EmbreeVariant};
+    use glint::study::bench::Query;
     let world = world(Kind::Foliage, 20_000);
     let embree = EmbreeAccelerator::build(world.geometry.clone(), 1).expect("it builds");
     let sets =

@@ -147,6 +147,7 @@ fn answers(agreement: &Agreement) -> String {
         (agreement.different, "elsewhere"),
         (agreement.near, "near"),
         (agreement.ties, "tied"),
+        (agreement.unsteady_turns, "turns unlike the first"),
     ]);
     let to_blame = list(&[
         (agreement.unexplained, "wrong"),

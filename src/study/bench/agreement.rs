@@ -30,6 +30,8 @@ pub struct Agreement {
     pub reference_wrong: usize,
     /// Of all these, those where the contestant is wrong.
     pub unexplained: usize,
+    /// Timed turns whose answers were not those that had been compared.
+    pub unsteady_turns: usize,
 }
 
 impl Agreement {
@@ -48,6 +50,7 @@ impl Agreement {
         self.different += other.different;
         self.reference_wrong += other.reference_wrong;
         self.unexplained += other.unexplained;
+        self.unsteady_turns += other.unsteady_turns;
     }
 }
 

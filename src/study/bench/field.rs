@@ -162,7 +162,7 @@ impl<'a> Field<'a> {
     pub(super) fn heats(&mut self, event: &Event<'_>) -> Vec<HeatTime> {
         let (query, all) = (event.set.kind.query(), event.set.rays.len());
         // From the middles of both halves, in which some kinds of rays differ.
-        let part = all.min(SAMPLE) / 2;
+        let part = all.min(SAMPLE).div_ceil(2);
         let parts = [all / 4, 3 * all / 4].map(|middle| {
             let start = middle.saturating_sub(part / 2);
             start..(start + part).min(all)

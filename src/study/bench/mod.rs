@@ -114,6 +114,6 @@ fn recipes(geometry: &Arc<Geometry>, threads: usize, isa: Isa) -> Vec<Recipe<'_>
     #[cfg(feature = "embree")]
     recipes.extend(embree::recipes(geometry, threads, isa));
     #[cfg(feature = "bvh")]
-    recipes.push(in_house::recipe(geometry, threads, isa));
+    recipes.extend([in_house::recipe(geometry, threads, isa)]);
     recipes
 }

@@ -153,13 +153,20 @@ fn repetition(
                 continue;
             }
             for attempt in 1.. {
-                let slow_before = story.probes[place.slot].was_slow();
+                let probe = &mut story.probes[place.slot];
+                if probe.was_slow() {
+                    // It may be over.
+                    probe.run();
+                }
+                let slow_before = probe.was_slow();
                 let (lap, answers) = field.run(entry.contestant, set, turn, place.threads);
                 // Every timed answer is one that has been checked.
-                entry.right &= digest(&answers) == entry.checked.digests[turn];
-                story.probes[place.slot].run();
-                let slow_after = story.probes[place.slot].was_slow();
-                let is_busy = slow_before || slow_after || !lap.undisturbed;
+                if digest(&answers) != entry.checked.digests[turn] {
+                    entry.checked.agreement.unsteady_turns += 1;
+                    entry.right = false;
+                }
+                probe.run();
+                let is_busy = slow_before || probe.was_slow() || !lap.undisturbed;
                 let again = attempt < MOST_ATTEMPTS && story.has_patience(turns_run + turns_done);
                 if is_busy && again {
                     story.repeated_turns += 1;
@@ -172,8 +179,9 @@ fn repetition(
             }
         }
     }
-    for times in start.entries.iter_mut().map(|entry| &mut entry.times[place.slot]) {
-        let rays = set.rays.len() as f64;
-        times.rays_per_second.push(rays / std::mem::take(&mut times.seconds).max(1e-9));
+    for entry in start.entries.iter_mut().filter(|entry| entry.right) {
+        let times = &mut entry.times[place.slot];
+        let seconds = std::mem::take(&mut times.seconds).max(1e-9);
+        times.rays_per_second.push(set.rays.len() as f64 / seconds);
     }
 }

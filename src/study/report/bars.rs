@@ -21,8 +21,8 @@ pub(super) struct Bar<'a> {
     pub(super) label: String,
 }
 
-const WIDTH: f64 = 620.0;
-const NAMES: f64 = 290.0;
+const WIDTH: f64 = 660.0;
+const NAMES: f64 = 325.0;
 const LABELS: f64 = 100.0;
 const ROW: f64 = 21.0;
 const HEAD: f64 = 24.0;

@@ -2,7 +2,7 @@
 
 use super::bars::{Bar, Chart};
 use super::html::Html;
-use crate::study::bench::{Build, Comparison, Report, Run, SLOW, Scene};
+use crate::study::bench::{Agreement, Build, Comparison, Report, Run, SLOW, Scene};
 
 /// The findings as a page.
 pub fn bench_page(report: &Report) -> String {
@@ -92,7 +92,10 @@ fn bar(run: &Run) -> Bar<'_> {
     let speed = run.rays_per_second;
     let label = match speed {
         Some(speed) => format!("{:.2}", speed.median / 1e6),
-        None => format!("wrong: {} of {}", run.agreement.unexplained, run.agreement.compared),
+        None => {
+            let Agreement { unexplained, unsteady_turns, .. } = run.agreement;
+            format!("wrong: {unexplained} rays, {unsteady_turns} turns")
+        }
     };
     Bar {
         name: format!("{} {isa}{}", run.backend, run.variant),

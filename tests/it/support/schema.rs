@@ -1,5 +1,7 @@
 //! JSON against the schemas in `tests/schemas/`.
 
+#![cfg(feature = "embree")]
+
 use serde_json::Value;
 use std::fs;
 
