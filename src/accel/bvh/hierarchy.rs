@@ -71,7 +71,7 @@ impl Hierarchy {
     ///
     /// # Errors
     /// When there are 2^30 triangles or 2^27 instances or more, or not enough memory.
-    pub(super) fn build(geometry: &Geometry) -> Result<Self> {
+    pub(super) fn build(geometry: &Geometry, quality: Quality) -> Result<Self> {
         // References have 30 bits.
         let triangles = geometry.stored_triangles();
         let instances = geometry.instances.len();
@@ -85,9 +85,9 @@ impl Hierarchy {
         let units =
             triangles * (NODE_UNITS + LEAF_UNITS) + (geometry.instances.len() + trees) * NODE_UNITS;
         let mut all = Self { units: Arena::zeroed(units).ok_or_else(memory)?, ..Self::default() };
-        all.own = all.add_meshes(&geometry.meshes)?;
+        all.own = all.add_meshes(&geometry.meshes, quality)?;
         for object in &geometry.objects {
-            let tree = all.add_meshes(&object.meshes)?;
+            let tree = all.add_meshes(&object.meshes, quality)?;
             all.objects.push(tree);
         }
         all.add_instances(geometry)?;
@@ -168,8 +168,8 @@ impl Hierarchy {
     }
 
     /// A tree over the triangles of some meshes.
-    fn add_meshes(&mut self, meshes: &[TriangleMesh]) -> Result<Tree> {
-        let tree = build(build::boxes(meshes), block::SIZE, Quality::Default);
+    fn add_meshes(&mut self, meshes: &[TriangleMesh], quality: Quality) -> Result<Tree> {
+        let tree = build(build::boxes(meshes), block::SIZE, quality);
         let meshes = Meshes::new(meshes);
         let wide = collapse(&tree);
         let order = &tree.order;
