@@ -169,12 +169,18 @@ impl Hierarchy {
 
     /// A tree over the triangles of some meshes.
     fn add_meshes(&mut self, meshes: &[TriangleMesh], quality: Quality) -> Result<Tree> {
-        let tree = build(build::boxes(meshes), block::SIZE, quality);
+        let c = std::time::Instant::now();
+        let boxes = build::boxes(meshes);
+        eprint!("boxes {:.3};", c.elapsed().as_secs_f64());
+        let tree = build(boxes, block::SIZE, quality);
+        eprint!("; build done {:.3};", c.elapsed().as_secs_f64());
         let meshes = Meshes::new(meshes);
         let wide = collapse(&tree);
+        eprint!("; collapse {:.3};", c.elapsed().as_secs_f64());
         let order = &tree.order;
         let leaf = |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize]);
         let root = self.add_tree(&tree.nodes, &wide, Some(&leaf))?;
+        eprintln!("; emit {:.3};", c.elapsed().as_secs_f64());
         Ok(Tree::new(root, bounds(&tree.nodes), &wide, meshes.into_numbers()))
     }
 

@@ -24,8 +24,9 @@ pub(super) struct Grid {
 impl Grid {
     #[inline(always)]
     pub(super) fn new(centers: &Centers, bins: usize) -> Self {
-        // Just below 1, so that the largest centre is in the last bin; an axis without extent has one bin.
-        let scale = |extent: f32| if extent > 0.0 { (1.0 - 1e-6) / extent } else { 0.0 };
+        // Just below 1, so that the largest centre is in the last bin. An axis almost without extent has one bin:
+        // the quotient must not overflow.
+        let scale = |extent: f32| if extent > 1e-37 { (1.0 - 1e-6) / extent } else { 0.0 };
         let [x, y, z, _] = (centers.max - centers.min).to_array();
         let scale = Vec4::new(scale(x), scale(y), scale(z), 0.0);
         Self { origin: centers.min.with_w(0.0), scale, shift: 23 - bins.trailing_zeros() }

@@ -10,6 +10,7 @@ mod grid;
 mod node;
 mod primitive;
 mod range;
+mod reinsert;
 mod sweep;
 mod triangles;
 
@@ -50,14 +51,13 @@ struct Settings {
 }
 
 impl Settings {
-    fn new(_quality: Quality, leaf_size: usize) -> Self {
-        let env = |k: &str, d: usize| std::env::var(k).ok().and_then(|s| s.parse().ok()).unwrap_or(d);
-        Self {
-            leaf_shift: leaf_size.ilog2(),
-            more_bins_from: [env("FEW", 128), env("MANY", 1024)],
-            task: env("TASK", 1 << 16),
-            min_cells: env("CELLS", 256),
-        }
+    fn new(quality: Quality, leaf_size: usize) -> Self {
+        let more_bins_from = match quality {
+            Quality::Fast => [usize::MAX; 2],
+            Quality::Default => [128, 1024],
+            Quality::High => [0; 2],
+        };
+        Self { leaf_shift: leaf_size.ilog2(), more_bins_from, task: 1 << 16, min_cells: 256 }
     }
 
     /// Bins along an axis for a range of `n` primitives.
@@ -93,21 +93,29 @@ pub(super) fn build(
         return BinaryTree::default();
     }
     let settings = Settings::new(quality, leaf_size);
+    const T: bool = true;
+    let clock = std::time::Instant::now();
     let measure = |chunk: &[PrimitiveBox]| (Bounds::of(chunk), Centers::of(chunk));
     let measures: Vec<_> = boxes.par_chunks(CHUNK).map(measure).collect();
     let (bounds, centers) = measures
         .into_iter()
         .fold((Bounds::EMPTY, Centers::EMPTY), |(b, c), (more_b, more_c)| (b.union(more_b), c.union(more_c)));
     // Room to sort large ranges.
-    let mut there: Vec<PrimitiveBox> = bytemuck::zeroed_vec(if n > settings.task { n } else { 0 });
+    let mut room: Vec<PrimitiveBox> = bytemuck::zeroed_vec(if n > settings.task { n } else { 0 });
     let mut order = vec![0; n];
     let mut top = Nodes::new(&bounds, 1);
-    let (here, there) = (&mut *boxes, &mut *there);
+    let (here, there) = (&mut *boxes, &mut *room);
     let range = Range { here, there, order: &mut order, first: 0, node: 0, depth: 0, bounds, centers };
     let tasks = split_large(range, &mut top, &settings);
+    if T { eprint!(" top {:.3} tasks {}", clock.elapsed().as_secs_f64(), tasks.len()); }
     let subtree = |range: Range<'_>| (range.node, subtree(range, &settings));
     let subtrees: Vec<_> = tasks.into_par_iter().with_max_len(1).map(subtree).collect();
-    top.join(&subtrees, order)
+    if T { eprint!(" subtrees {:.3}", clock.elapsed().as_secs_f64()); }
+    // Nobody needs them any more; the nodes are about to be there twice.
+    drop((boxes, room));
+    let r = top.join(&subtrees, order);
+    if T { eprint!(" join {:.3}", clock.elapsed().as_secs_f64()); }
+    if quality == Quality::High { reinsert::improve(r) } else { r }
 }
 
 /// Splits a range until each part is small enough for one thread.

@@ -65,6 +65,18 @@ impl BinaryNode {
         }
     }
 
+    /// Gives it another box.
+    #[inline(always)]
+    pub(super) fn set_bounds(&mut self, bounds: Aabb) {
+        (self.min, self.max) = (bounds.min, bounds.max);
+    }
+
+    /// Makes it an inner node.
+    #[inline(always)]
+    pub(super) fn set_inner(&mut self, left: u32) {
+        (self.first, self.count) = (left, 0);
+    }
+
     /// The same with its children `by` places further.
     #[inline(always)]
     fn moved(self, by: u32) -> Self {

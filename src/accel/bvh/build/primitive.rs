@@ -17,6 +17,11 @@ impl Bounds {
     /// The union of nothing. Its surface is infinite.
     pub(super) const EMPTY: Self = Self { lower: Vec4::NEG_INFINITY, upper: Vec4::NEG_INFINITY };
 
+    /// A box.
+    pub(super) fn around(aabb: &Aabb) -> Self {
+        Self { lower: (-aabb.min).extend(0.0), upper: aabb.max.extend(0.0) }
+    }
+
     /// The union of the boxes of primitives.
     #[inline(always)]
     pub(super) fn of(primitives: &[PrimitiveBox]) -> Self {
