@@ -55,7 +55,8 @@ impl WideNode {
         let is_inner = |child: &&u32| matches!(nodes[**child as usize].kind(), Kind::Inner(_));
         let chosen = &chosen[..count];
         let mut node = Self { count: count as u8, ..Self::default() };
-        let (inner, leaves) = (chosen.iter().filter(is_inner), chosen.iter().filter(|c| !is_inner(c)));
+        let (inner, leaves) =
+            (chosen.iter().filter(is_inner), chosen.iter().filter(|c| !is_inner(c)));
         for (place, child) in node.children.iter_mut().zip(inner.clone().chain(leaves)) {
             *place = *child;
         }

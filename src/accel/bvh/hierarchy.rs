@@ -90,7 +90,7 @@ impl Hierarchy {
             let tree = all.add_meshes(&object.meshes, quality)?;
             all.objects.push(tree);
         }
-        all.add_instances(geometry)?;
+        all.add_instances(geometry, quality)?;
         all.units.truncate(all.used);
         Ok(all)
     }
@@ -169,23 +169,17 @@ impl Hierarchy {
 
     /// A tree over the triangles of some meshes.
     fn add_meshes(&mut self, meshes: &[TriangleMesh], quality: Quality) -> Result<Tree> {
-        let c = std::time::Instant::now();
-        let boxes = build::boxes(meshes);
-        eprint!("boxes {:.3};", c.elapsed().as_secs_f64());
-        let tree = build(boxes, block::SIZE, quality);
-        eprint!("; build done {:.3};", c.elapsed().as_secs_f64());
+        let tree = build(build::boxes(meshes), block::SIZE, quality);
         let meshes = Meshes::new(meshes);
         let wide = collapse(&tree);
-        eprint!("; collapse {:.3};", c.elapsed().as_secs_f64());
         let order = &tree.order;
         let leaf = |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize]);
         let root = self.add_tree(&tree.nodes, &wide, Some(&leaf))?;
-        eprintln!("; emit {:.3};", c.elapsed().as_secs_f64());
         Ok(Tree::new(root, bounds(&tree.nodes), &wide, meshes.into_numbers()))
     }
 
     /// The tree over the instances.
-    fn add_instances(&mut self, geometry: &Geometry) -> Result<()> {
+    fn add_instances(&mut self, geometry: &Geometry, quality: Quality) -> Result<()> {
         let inverse = |i: &Instance| i.world_from_object.to_f64().inverse();
         self.object_from_world = geometry.instances.iter().map(inverse).collect();
         let mut boxes = Vec::new();
@@ -205,7 +199,7 @@ impl Hierarchy {
                 boxes.push(PrimitiveBox::new(&bounds, id));
             }
         }
-        let tree = build(boxes, 1, Quality::Default);
+        let tree = build(boxes, 1, quality);
         let wide = collapse(&tree);
         let root = self.add_tree(&tree.nodes, &wide, None::<&fn(u32, u32) -> Block>)?;
         let children = wide.nodes.iter().flat_map(WideNode::children);
@@ -296,4 +290,31 @@ fn leaf_range(node: &BinaryNode) -> Option<(u32, u32)> {
 
 fn bounds(tree: &[BinaryNode]) -> Aabb {
     tree.first().map_or(Aabb::EMPTY, BinaryNode::bounds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::CounterRng;
+
+    /// More triangles than one thread builds over alone.
+    #[test]
+    fn the_number_of_threads_changes_no_byte() {
+        let mut rng = CounterRng::new(0);
+        let mut number = || rng.unit() * rng.unit();
+        let positions: Vec<_> = (0..90_002).map(|_| [number(), number(), number()]).collect();
+        let triangles = (0..90_000).map(|i| [i, i + 1, i + 2]).collect();
+        let meshes = vec![TriangleMesh::new(positions, triangles, false)];
+        let geometry = Geometry { meshes, ..Geometry::default() };
+        for quality in [Quality::Fast, Quality::Default, Quality::High] {
+            let bytes = [1, 2, 3, 8].map(|threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                let hierarchy =
+                    pool.expect("threads").install(|| Hierarchy::build(&geometry, quality));
+                bytemuck::cast_slice::<_, u8>(&hierarchy.expect("it builds").units).to_vec()
+            });
+            assert!(bytes[0].len() > 90_000 * 30);
+            assert!(bytes.iter().all(|other| *other == bytes[0]), "{quality:?}");
+        }
+    }
 }

@@ -54,11 +54,7 @@ impl Bvh {
     ///
     /// # Errors
     /// As there.
-    pub fn with_quality(
-        geometry: Arc<Geometry>,
-        threads: usize,
-        quality: Quality,
-    ) -> Result<Self> {
+    pub fn with_quality(geometry: Arc<Geometry>, threads: usize, quality: Quality) -> Result<Self> {
         let start = Instant::now();
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)

@@ -4,11 +4,11 @@
 //! 2011. A few passes over the primitives, shared by all threads, take the place of one for each level. Primitives
 //! much larger than a cell are cells of their own, so that they do not spoil others.
 
-use super::{HALVE_FROM, Settings};
 use super::bins::{Bins, Grid, MOST_BINS};
 use super::node::Nodes;
 use super::primitive::{Bounds, Centers, PrimitiveBox};
 use super::range::Range;
+use super::{HALVE_FROM, Settings};
 use glam::Vec4;
 use rayon::prelude::*;
 use std::marker::PhantomData;
@@ -200,12 +200,17 @@ fn split_cells(
     let &Range { node, depth, bounds, .. } = range;
     let mut bins = Bins::new();
     let mut parts = Vec::new();
-    let mut stack = vec![Part { cells: 0..cells.len(), count: range.here.len(), node, depth, bounds }];
+    let mut stack =
+        vec![Part { cells: 0..cells.len(), count: range.here.len(), node, depth, bounds }];
     while let Some(part) = stack.pop() {
-        let is_whole = part.count <= settings.task
+        let is_whole = part.count <= settings.part
             || part.cells.len() < settings.min_cells
             || part.depth >= HALVE_FROM;
-        let sides = if is_whole { None } else { move_to_sides(&mut cells[part.cells.clone()], &mut bins, settings) };
+        let sides = if is_whole {
+            None
+        } else {
+            move_to_sides(&mut cells[part.cells.clone()], &mut bins, settings)
+        };
         let Some((middle, count, bounds)) = sides else {
             parts.push(part);
             continue;
@@ -215,7 +220,13 @@ fn split_cells(
         let middle = start + middle;
         let depth = part.depth + 1;
         let right = part.count - count;
-        stack.push(Part { cells: middle..end, count: right, node: node + 1, depth, bounds: bounds[1] });
+        stack.push(Part {
+            cells: middle..end,
+            count: right,
+            node: node + 1,
+            depth,
+            bounds: bounds[1],
+        });
         stack.push(Part { cells: start..middle, count, node, depth, bounds: bounds[0] });
     }
     parts

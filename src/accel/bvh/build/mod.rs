@@ -1,9 +1,10 @@
 //! A binary hierarchy by the surface area heuristic, built by all threads.
 //!
 //! From the top: `grid` splits large ranges between cells, `range` splits what is left at planes between `bins`, and
-//! `sweep` weighs the planes between the last few primitives, so that leaves come out full. Which thread does
-//! what decides nothing: the tree is the same for any number of them. Knows boxes, not what is in them;
-//! `triangles` makes them.
+//! `sweep` weighs the planes between the last few primitives, so that leaves come out full; `reinsert` moves subtrees to better
+//! places. Which thread does
+//! what decides nothing: the tree is the same for any number of them. Knows boxes, not what is in
+//! them; `triangles` makes them.
 
 mod bins;
 mod grid;
@@ -13,6 +14,8 @@ mod range;
 mod reinsert;
 mod sweep;
 mod triangles;
+#[cfg(test)]
+mod tests;
 
 pub(super) use node::{BinaryNode, BinaryTree, Kind, half_area};
 pub(super) use primitive::PrimitiveBox;
@@ -23,6 +26,7 @@ use node::Nodes;
 use primitive::{Bounds, Centers};
 use range::Range;
 use rayon::prelude::*;
+use reinsert::Reinsertion;
 use sweep::Sweep;
 
 /// How much a hierarchy may cost to build, against what it saves later.
@@ -44,20 +48,40 @@ struct Settings {
     leaf_shift: u32,
     /// Ranges of fewer primitives have 8 bins along an axis, or 16; all others have 32.
     more_bins_from: [usize; 2],
-    /// Ranges of more primitives are split between cells of a grid.
-    task: usize,
-    /// Parts of fewer cells are not split between them.
+    /// Parts of fewer primitives, or of fewer cells, are not split between cells of the grid.
+    part: usize,
     min_cells: usize,
+    /// What is moved in the finished tree.
+    reinsertion: Reinsertion,
 }
 
 impl Settings {
     fn new(quality: Quality, leaf_size: usize) -> Self {
-        let more_bins_from = match quality {
-            Quality::Fast => [usize::MAX; 2],
-            Quality::Default => [128, 1024],
-            Quality::High => [0; 2],
-        };
-        Self { leaf_shift: leaf_size.ilog2(), more_bins_from, task: 1 << 16, min_cells: 256 }
+        let leaf_shift = leaf_size.ilog2();
+        match quality {
+            Quality::Fast => Self {
+                leaf_shift,
+                more_bins_from: [usize::MAX; 2],
+                part: 1 << 12,
+                min_cells: 32,
+                reinsertion: Reinsertion { passes: 0, share: 1 },
+            },
+            // The largest nodes alone save most of what there is to be saved.
+            Quality::Default => Self {
+                leaf_shift,
+                more_bins_from: [128, 1024],
+                part: LARGE,
+                min_cells: 256,
+                reinsertion: Reinsertion { passes: 3, share: 64 },
+            },
+            Quality::High => Self {
+                leaf_shift,
+                more_bins_from: [0; 2],
+                part: LARGE,
+                min_cells: 256,
+                reinsertion: Reinsertion { passes: 6, share: 4 },
+            },
+        }
     }
 
     /// Bins along an axis for a range of `n` primitives.
@@ -78,11 +102,14 @@ impl Settings {
 /// logarithm of what is left.
 pub(super) const HALVE_FROM: u32 = 48;
 
+/// Ranges of more primitives are split between the cells of a grid.
+const LARGE: usize = 1 << 16;
+
 /// Primitives that one thread measures at a time.
 const CHUNK: usize = 8192;
 
 /// Builds over `boxes` with leaves of at most `leaf_size` primitives, a power of two up to 8. There are fewer than
-/// 2^30 primitives. The tree is no deeper than 48 plus the logarithm of their number.
+/// 2^30 primitives. The tree is no deeper than [`HALVE_FROM`] + 30.
 pub(super) fn build(
     mut boxes: Vec<PrimitiveBox>,
     leaf_size: usize,
@@ -93,29 +120,25 @@ pub(super) fn build(
         return BinaryTree::default();
     }
     let settings = Settings::new(quality, leaf_size);
-    const T: bool = true;
-    let clock = std::time::Instant::now();
     let measure = |chunk: &[PrimitiveBox]| (Bounds::of(chunk), Centers::of(chunk));
     let measures: Vec<_> = boxes.par_chunks(CHUNK).map(measure).collect();
-    let (bounds, centers) = measures
-        .into_iter()
-        .fold((Bounds::EMPTY, Centers::EMPTY), |(b, c), (more_b, more_c)| (b.union(more_b), c.union(more_c)));
+    let (bounds, centers) =
+        measures.into_iter().fold((Bounds::EMPTY, Centers::EMPTY), |(b, c), (more_b, more_c)| {
+            (b.union(more_b), c.union(more_c))
+        });
     // Room to sort large ranges.
-    let mut room: Vec<PrimitiveBox> = bytemuck::zeroed_vec(if n > settings.task { n } else { 0 });
+    let mut room: Vec<PrimitiveBox> = bytemuck::zeroed_vec(if n > LARGE { n } else { 0 });
     let mut order = vec![0; n];
     let mut top = Nodes::new(&bounds, 1);
     let (here, there) = (&mut *boxes, &mut *room);
-    let range = Range { here, there, order: &mut order, first: 0, node: 0, depth: 0, bounds, centers };
+    let range =
+        Range { here, there, order: &mut order, first: 0, node: 0, depth: 0, bounds, centers };
     let tasks = split_large(range, &mut top, &settings);
-    if T { eprint!(" top {:.3} tasks {}", clock.elapsed().as_secs_f64(), tasks.len()); }
     let subtree = |range: Range<'_>| (range.node, subtree(range, &settings));
     let subtrees: Vec<_> = tasks.into_par_iter().with_max_len(1).map(subtree).collect();
-    if T { eprint!(" subtrees {:.3}", clock.elapsed().as_secs_f64()); }
     // Nobody needs them any more; the nodes are about to be there twice.
     drop((boxes, room));
-    let r = top.join(&subtrees, order);
-    if T { eprint!(" join {:.3}", clock.elapsed().as_secs_f64()); }
-    if quality == Quality::High { reinsert::improve(r) } else { r }
+    reinsert::improve(top.join(&subtrees, order), settings.reinsertion)
 }
 
 /// Splits a range until each part is small enough for one thread.
@@ -123,7 +146,7 @@ fn split_large<'a>(range: Range<'a>, top: &mut Nodes, settings: &Settings) -> Ve
     let mut large = vec![range];
     let mut small = Vec::new();
     while let Some(range) = large.pop() {
-        if range.here.len() <= settings.task {
+        if range.here.len() <= LARGE {
             small.push(range);
             continue;
         }

@@ -13,7 +13,7 @@ pub(in super::super) struct BinaryTree {
     /// Root first; none without primitives. Children come after their parents, two siblings side by side, the
     /// left one in an odd place.
     pub(in super::super) nodes: Vec<BinaryNode>,
-    /// Numbers of the primitives, in the order of the leaves.
+    /// Numbers of the primitives; leaves are ranges of them.
     pub(in super::super) order: Vec<u32>,
     /// Subtrees by their roots, with the places of all that is below; together they are all leaves. In each, the
     /// descendants of a node follow its children, those of the left child first.

@@ -1,8 +1,8 @@
 //! Primitives that are to be split: counted into bins, then moved to either side of a plane.
 
-use super::{HALVE_FROM, Settings};
 use super::bins::{Bins, Grid, Side};
 use super::primitive::{Bounds, Centers, PrimitiveBox};
+use super::{HALVE_FROM, Settings};
 
 /// Primitives that are still to be split.
 pub(super) struct Range<'a> {
@@ -49,7 +49,11 @@ impl Range<'_> {
     }
 
     /// Moves the primitives; returns how many are on the left, and the boxes of both sides.
-    fn move_to_sides(&mut self, settings: &Settings, bins: &mut Bins) -> Option<(usize, [Bounds; 2])> {
+    fn move_to_sides(
+        &mut self,
+        settings: &Settings,
+        bins: &mut Bins,
+    ) -> Option<(usize, [Bounds; 2])> {
         if self.depth >= HALVE_FROM {
             return None;
         }

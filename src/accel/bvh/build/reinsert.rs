@@ -10,24 +10,29 @@ use super::primitive::Bounds;
 use crate::geometry::Aabb;
 use rayon::prelude::*;
 
-/// How often places are looked for, and for which part of all nodes.
-const PASSES: usize = 3;
-const PART: usize = 8;
+/// How much is moved: in so many passes, of all nodes one in `share`, the largest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reinsertion {
+    pub(super) passes: usize,
+    pub(super) share: usize,
+}
+
 /// Places that are tried for a node at most: where everything overlaps, a search would never end.
 const MOST_TRIED: usize = 512;
 /// Deeper trees than this are given up: rays have no room for them.
-const MOST_DEPTH: u32 = HALVE_FROM + 30;
+pub(super) const MOST_DEPTH: u32 = HALVE_FROM + 30;
 /// Nodes less deep than this are laid out by one thread.
 const TOP: u32 = 8;
 
 /// The tree after some passes; as it was if that would be too deep.
-pub(super) fn improve(tree: BinaryTree) -> BinaryTree {
-    if tree.nodes.len() < 4 {
+pub(super) fn improve(tree: BinaryTree, Reinsertion { passes, share }: Reinsertion) -> BinaryTree {
+    // No place is better in a tree of three.
+    if passes == 0 || tree.nodes.len() < 4 {
         return tree;
     }
     let mut open = OpenTree::new(tree.nodes.clone());
-    for _ in 0..PASSES {
-        open.pass();
+    for _ in 0..passes {
+        open.pass(share);
     }
     if open.depth() > MOST_DEPTH { tree } else { lay_out(&open.nodes, tree.order) }
 }
@@ -76,11 +81,11 @@ impl OpenTree {
         half_area(&self.bounds(node))
     }
 
-    /// Looks for places for the largest nodes, and moves them.
-    fn pass(&mut self) {
+    /// Looks for places for the largest nodes, one in `share`, and moves them.
+    fn pass(&mut self, share: usize) {
         let mut largest: Vec<(f32, u32)> =
             (1..self.nodes.len() as u32).into_par_iter().map(|i| (self.area(i), i)).collect();
-        let count = largest.len().div_ceil(PART);
+        let count = largest.len().div_ceil(share);
         largest.select_nth_unstable_by(count - 1, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         largest.truncate(count);
         let find = |stack: &mut Vec<_>, &(_, node): &(f32, u32)| self.find_place(node, stack);

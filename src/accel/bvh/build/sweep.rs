@@ -4,11 +4,11 @@
 //! Visual Computer 6(3), 1990. A leaf costs the same with one primitive as with all that it has room for, so
 //! cuts are at multiples of that, counted from either end: fewer planes to weigh, and few leaves that are not full.
 
-use super::{HALVE_FROM, Settings};
 use super::bins::{Grid, cheapest_axis};
 use super::node::Nodes;
 use super::primitive::{Bounds, Centers, PrimitiveBox};
 use super::range::Range;
+use super::{HALVE_FROM, Settings};
 use glam::Vec4;
 
 /// Most primitives.

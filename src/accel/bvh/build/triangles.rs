@@ -42,7 +42,8 @@ fn fill((mesh, start, first, places): Job<'_>) -> bool {
         let is_finite = corners.iter().all(|p| p.is_finite());
         let [a, b, c] = corners;
         let bounds = Aabb { min: a.min(b).min(c), max: a.max(b).max(c) };
-        *place = if is_finite { PrimitiveBox::new(&bounds, first + i) } else { PrimitiveBox::MISSING };
+        *place =
+            if is_finite { PrimitiveBox::new(&bounds, first + i) } else { PrimitiveBox::MISSING };
         all_finite &= is_finite;
     }
     all_finite
