@@ -147,8 +147,8 @@ impl OpenTree {
         let involved = [node, beside, parent, to];
         let is_in_vain = to == beside
             || involved.iter().any(|&i| is_touched[i as usize])
-            || self.is_below(to, node)
-            || self.is_below(node, to);
+            || !self.is_apart(to, node)
+            || !self.is_apart(node, to);
         if is_in_vain {
             return;
         }
@@ -170,12 +170,19 @@ impl OpenTree {
         }
     }
 
-    /// Whether a node is another one or below it.
-    fn is_below(&self, mut node: u32, other: u32) -> bool {
-        while node != other && node != 0 {
+    /// Whether another node is not on the way from a node up to the root, and that is not too long a way: chains are not
+    /// to become ever longer, for each move goes all the way up.
+    fn is_apart(&self, mut node: u32, other: u32) -> bool {
+        for _ in 0..=MOST_DEPTH {
+            if node == other {
+                return false;
+            }
+            if node == 0 {
+                return true;
+            }
             node = self.parents[pair(node)];
         }
-        node == other
+        false
     }
 
     /// Puts a node with what is below it in some place.
