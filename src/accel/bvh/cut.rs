@@ -125,20 +125,20 @@ fn join([left, right]: &[Costs; 2], area: f32) -> (Costs, u64) {
     let mut least = [NEVER; WIDTH];
     for on_left in 1..WIDTH {
         let cost_left = left.0[on_left - 1];
-        for j in 0..WIDTH {
-            let cost = cost_left + padded[WIDTH + j - on_left];
+        for (least, cost_right) in least.iter_mut().zip(&padded[WIDTH - on_left..]) {
+            let cost = cost_left + cost_right;
             let tagged = f32::from_bits(cost.to_bits() & !TAG | on_left as u32);
-            least[j] = if tagged < least[j] { tagged } else { least[j] };
+            *least = if tagged < *least { tagged } else { *least };
         }
     }
     let as_one = area + least[WIDTH - 1];
     let mut costs = Costs([as_one; WIDTH]);
     let mut choices = 0;
-    for j in 1..WIDTH {
-        let is_open = least[j] < as_one || j == WIDTH - 1;
-        let tag = if is_open { least[j].to_bits() & TAG } else { 0 };
+    for (j, (cost, least)) in costs.0.iter_mut().zip(least).enumerate().skip(1) {
+        let is_open = least < as_one || j == WIDTH - 1;
+        let tag = if is_open { least.to_bits() & TAG } else { 0 };
         choices |= u64::from(tag) << (4 * j);
-        costs.0[j] = if least[j] < as_one { least[j] } else { as_one };
+        *cost = if least < as_one { least } else { as_one };
     }
     (costs, choices)
 }

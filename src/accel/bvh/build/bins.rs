@@ -179,9 +179,9 @@ impl Bins {
         }
         let (mut union, mut count) = ([Bounds::EMPTY; 3], [0; 3]);
         let (mut least, mut best) = (Vec4::INFINITY, Vec4::ZERO);
-        for bin in 1..bins {
+        for (bin, right) in right.iter().enumerate().take(bins).skip(1) {
             self.add_bins(bin - 1, &mut union, &mut count);
-            let cost = Bounds::half_areas(&union) * leaves(&count) + right[bin];
+            let cost = Bounds::half_areas(&union) * leaves(&count) + right;
             let is_less = cost.cmplt(least);
             least = Vec4::select(is_less, cost, least);
             best = Vec4::select(is_less, Vec4::splat(bin as f32), best);

@@ -22,22 +22,22 @@ const BITS_ALONG: u32 = 10;
 const CHUNKS: usize = 16;
 
 /// Splits a range between cells, until the parts are small or made of few cells; its node in `nodes` gets the
-/// nodes above them. Gives the range back if there is nothing to split.
+/// nodes above them. Gives the range back as the only part if there is nothing to split.
 pub(super) fn split<'a>(
     range: Range<'a>,
     nodes: &mut Nodes,
     settings: &Settings,
-) -> Result<Vec<Range<'a>>, Range<'a>> {
+) -> Vec<Range<'a>> {
     let n = range.here.len();
     let grid = CellGrid::new(&range.centers, (n.ilog2() - 4).min(MOST_BITS));
     let mut cells = sort(range.here, range.there, &grid);
     if cells.len() > n / 4 {
         // Hardly anything fits into a cell.
-        return Err(range);
+        return vec![range];
     }
     let parts = split_cells(&mut cells, &range, nodes, settings);
     if parts.len() < 2 {
-        return Err(range);
+        return vec![range];
     }
     // Each part in one piece, where the whole has been.
     let sorted = &*range.there;
@@ -57,7 +57,7 @@ pub(super) fn split<'a>(
         rest = behind;
         ranges.push(Range { node, depth, bounds, centers, ..own });
     }
-    Ok(ranges)
+    ranges
 }
 
 /// A grid of cells over centres, about as long as wide.

@@ -150,14 +150,14 @@ fn split_large<'a>(range: Range<'a>, top: &mut Nodes, settings: &Settings) -> Ve
             small.push(range);
             continue;
         }
-        match grid::split(range, top, settings) {
-            Ok(parts) => large.extend(parts),
-            Err(range) => {
-                let [mut left, mut right] = range.split(settings, &mut Bins::new());
-                left.node = top.split(left.node, &[left.bounds, right.bounds]);
-                right.node = left.node + 1;
-                large.extend([left, right]);
-            }
+        let mut parts = grid::split(range, top, settings);
+        if parts.len() > 1 {
+            large.extend(parts);
+        } else if let Some(range) = parts.pop() {
+            let [mut left, mut right] = range.split(settings, &mut Bins::new());
+            left.node = top.split(left.node, &[left.bounds, right.bounds]);
+            right.node = left.node + 1;
+            large.extend([left, right]);
         }
     }
     small

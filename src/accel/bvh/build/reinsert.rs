@@ -193,13 +193,14 @@ impl OpenTree {
         }
     }
 
-    /// Makes boxes fit again from an inner node up.
+    /// Makes boxes fit again from an inner node up, as far as any changes.
     fn refit(&mut self, mut node: u32) {
-        loop {
-            if let Kind::Inner([left, right]) = self.nodes[node as usize].kind() {
-                let bounds = self.bounds(left).union(self.bounds(right));
-                self.nodes[node as usize].set_bounds(bounds);
+        while let Kind::Inner([left, right]) = self.nodes[node as usize].kind() {
+            let (old, new) = (self.bounds(node), self.bounds(left).union(self.bounds(right)));
+            if old == new {
+                break;
             }
+            self.nodes[node as usize].set_bounds(new);
             if node == 0 {
                 break;
             }
