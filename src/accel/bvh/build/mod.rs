@@ -1,10 +1,9 @@
 //! A binary hierarchy by the surface area heuristic, built by all threads.
 //!
 //! From the top: `grid` splits large ranges between cells, `range` splits what is left at planes between `bins`, and
-//! `sweep` weighs the planes between the last few primitives, so that leaves come out full; `reinsert` moves subtrees to better
-//! places. Which thread does
-//! what decides nothing: the tree is the same for any number of them. Knows boxes, not what is in
-//! them; `triangles` makes them.
+//! `sweep` weighs the planes between the last few primitives, so that leaves come out full. Then `reinsert` moves
+//! subtrees to better places. Which thread does what decides nothing: the tree is the same for any number of
+//! them. Knows boxes, not what is in them; `triangles` makes them.
 
 mod bins;
 mod grid;
@@ -138,7 +137,9 @@ pub(super) fn build(
     let subtrees: Vec<_> = tasks.into_par_iter().with_max_len(1).map(subtree).collect();
     // Nobody needs them any more; the nodes are about to be there twice.
     drop((boxes, room));
-    reinsert::improve(top.join(&subtrees, order), settings.reinsertion)
+    let tree = top.join(&subtrees, order);
+    drop(subtrees);
+    reinsert::improve(tree, settings.reinsertion)
 }
 
 /// Splits a range until each part is small enough for one thread.

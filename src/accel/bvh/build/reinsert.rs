@@ -34,7 +34,11 @@ pub(super) fn improve(tree: BinaryTree, Reinsertion { passes, share }: Reinserti
     for _ in 0..passes {
         open.pass(share);
     }
-    if open.depth() > MOST_DEPTH { tree } else { lay_out(&open.nodes, tree.order) }
+    if open.depth() > MOST_DEPTH {
+        return tree;
+    }
+    drop(tree.nodes);
+    lay_out(&open.nodes, tree.order)
 }
 
 /// A tree whose nodes know their parents. Siblings stay side by side, in any order else.
