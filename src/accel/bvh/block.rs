@@ -1,8 +1,7 @@
 //! Leaves: up to four triangles, as one array a coordinate. Knows no rays.
 
-use super::binned::PrimitiveBox;
 use super::node::{LEAF_UNITS, UNIT};
-use crate::geometry::{Aabb, PrimitiveId, TriangleMesh};
+use crate::geometry::{PrimitiveId, TriangleMesh};
 use crate::math::Vec3;
 use bytemuck::{Pod, Zeroable};
 
@@ -105,18 +104,6 @@ impl<'a> Meshes<'a> {
     pub(super) fn vertices(&self, triangle: u32) -> [Vec3; 3] {
         let (mesh, primitive) = self.numbers.locate(triangle);
         self.meshes[mesh].vertices(primitive)
-    }
-
-    /// Boxes of all triangles that have one; what is not finite is left out.
-    pub(super) fn boxes(&self) -> Vec<PrimitiveBox> {
-        let corners =
-            self.meshes.iter().flat_map(|m| (0..m.triangles.len() as u32).map(|i| m.vertices(i)));
-        let bounds = |corners: [Vec3; 3]| corners.into_iter().fold(Aabb::EMPTY, Aabb::with_point);
-        corners
-            .zip(0..)
-            .filter(|(corners, _)| corners.iter().all(|p| p.is_finite()))
-            .map(|(corners, id)| PrimitiveBox { bounds: bounds(corners), id })
-            .collect()
     }
 
     pub(super) fn into_numbers(self) -> Numbers {

@@ -1,11 +1,12 @@
-//! From the binary tree to nodes of sixteen children: which binary nodes become children of which.
+//! From the binary tree to nodes of many children, by all threads.
 //!
-//! Source: H. Ylitie, T. Karras, S. Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
-//! HPG 2017, section 3.1: of all ways to leave out inner nodes, the one with the least cost by the surface area
-//! heuristic, by dynamic programming from the leaves up. Knows nothing of how nodes and leaves are stored.
+//! Which binary nodes become children of which is what `cut` has chosen. Knows nothing of how nodes and leaves are
+//! stored.
 
-use super::binned::{BinaryNode, Kind, half_area};
+use super::build::{BinaryNode, BinaryTree, Kind};
+use super::cut::Cuts;
 use super::node::WIDTH;
+use rayon::prelude::*;
 
 /// A tree of wide nodes, root first.
 #[derive(Debug, Default)]
@@ -47,29 +48,59 @@ impl WideNode {
     pub(super) fn inner(&self) -> std::ops::Range<usize> {
         self.first as usize..self.first as usize + usize::from(self.inner)
     }
+
+    /// The wide node that begins at a binary one; its inner children have no number yet.
+    fn new(nodes: &[BinaryNode], cuts: &Cuts, binary: u32) -> Self {
+        let (chosen, count) = cuts.children(nodes, binary);
+        let is_inner = |child: &&u32| matches!(nodes[**child as usize].kind(), Kind::Inner(_));
+        let chosen = &chosen[..count];
+        let mut node = Self { count: count as u8, ..Self::default() };
+        let (inner, leaves) =
+            (chosen.iter().filter(is_inner), chosen.iter().filter(|c| !is_inner(c)));
+        for (place, child) in node.children.iter_mut().zip(inner.clone().chain(leaves)) {
+            *place = *child;
+        }
+        node.inner = inner.count() as u8;
+        node
+    }
+}
+
+/// A wide node that is still to be made.
+#[derive(Clone, Copy)]
+struct Open {
+    binary: u32,
+    /// Its number.
+    place: usize,
+    depth: usize,
+    /// Children left behind on the way from the root.
+    behind: usize,
 }
 
 /// The wide tree over a binary one.
-pub(super) fn collapse(tree: &[BinaryNode]) -> WideTree {
-    let mut wide = WideTree::default();
-    if tree.is_empty() {
-        return wide;
+pub(super) fn collapse(tree: &BinaryTree) -> WideTree {
+    if tree.nodes.is_empty() {
+        return WideTree::default();
     }
-    let splits = best_splits(tree);
-    wide.nodes.push(WideNode::default());
-    // (binary node, its wide node, depth, children left behind on the way): an explicit stack, depth first.
-    let mut open = vec![(0_u32, 0_usize, 1_usize, 0_usize)];
-    while let Some((binary, place, depth, behind)) = open.pop() {
-        let mut node = children(tree, &splits, binary);
-        node.first = wide.nodes.len() as u32;
-        wide.nodes[place] = node;
-        wide.nodes.resize(node.inner().end, WideNode::default());
-        wide.depth = wide.depth.max(depth);
-        let behind = behind + usize::from(node.count) - 1;
-        wide.pending = wide.pending.max(behind + 1);
-        for (&child, place) in node.children().iter().zip(node.inner()) {
-            open.push((child, place, depth + 1, behind));
-        }
+    let cuts = Cuts::new(tree);
+    // The top first; then what begins in the parts of the binary tree, by all threads.
+    let top = tree.parts.first().map_or(0, |(_, range)| range.start);
+    let mut is_root = vec![false; top];
+    for (root, _) in &tree.parts {
+        is_root[*root as usize] = true;
+    }
+    let is_elsewhere = |binary: u32| is_root.get(binary as usize).is_none_or(|is_root| *is_root);
+    let root = Open { binary: 0, place: 0, depth: 1, behind: 0 };
+    let (mut wide, elsewhere) = grow(&tree.nodes, &cuts, root, is_elsewhere);
+    let subtree = |open: &Open| grow(&tree.nodes, &cuts, Open { place: 0, ..*open }, |_| false).0;
+    let subtrees: Vec<WideTree> = elsewhere.par_iter().map(subtree).collect();
+    for (open, mut subtree) in elsewhere.into_iter().zip(subtrees) {
+        // The root takes the place that is kept for it; the rest goes behind.
+        let by = wide.nodes.len() as u32 - 1;
+        subtree.nodes.iter_mut().for_each(|node| node.first += by);
+        wide.nodes[open.place] = subtree.nodes[0];
+        wide.nodes.extend_from_slice(&subtree.nodes[1..]);
+        wide.depth = wide.depth.max(subtree.depth);
+        wide.pending = wide.pending.max(subtree.pending);
     }
     let mut leaves = 0;
     for node in &mut wide.nodes {
@@ -80,75 +111,33 @@ pub(super) fn collapse(tree: &[BinaryNode]) -> WideTree {
     wide
 }
 
-/// For an inner node: `[0]` is how many of a wide node's children its left part gets, if it becomes one;
-/// `[i - 1]` how many of i children, if it is left out and has i to itself, or 0 if it is better not left out.
-type Splits = [u8; WIDTH];
-
-/// Cost of a step through a wide node, and of one through a leaf, for each unit of surface.
-const STEP_COST: f32 = 1.0;
-const LEAF_COST: f32 = 1.0;
-
-/// The splits of the least cost.
-fn best_splits(tree: &[BinaryNode]) -> Vec<Splits> {
-    let mut splits = vec![[0; WIDTH]; tree.len()];
-    // Costs of subtrees whose parents are to come: `[i]` with at most i children for them.
-    let mut costs: Vec<[f32; WIDTH + 1]> = Vec::new();
-    // Children come after their parents, left before right: from the back, everything is ready in time.
-    for (node, splits) in tree.iter().zip(&mut splits).rev() {
-        let area = half_area(&node.bounds);
-        match node.kind {
-            Kind::Leaf { start, end } if start == end => {}
-            Kind::Leaf { .. } => costs.push([area * LEAF_COST; WIDTH + 1]),
-            Kind::Inner(_) => {
-                let (Some(left), Some(right)) = (costs.pop(), costs.pop()) else { continue };
-                let mut shared = [f32::INFINITY; WIDTH + 1];
-                let mut of_left = [0; WIDTH + 1];
-                for l in 1..WIDTH {
-                    for r in 1..=WIDTH - l {
-                        let cost = left[l] + right[r];
-                        if cost < shared[l + r] {
-                            (shared[l + r], of_left[l + r]) = (cost, l as u8);
-                        }
-                    }
-                }
-                let alone = area * STEP_COST + shared[WIDTH];
-                splits[0] = of_left[WIDTH];
-                let mut cost = [alone; WIDTH + 1];
-                for i in 2..=WIDTH {
-                    if shared[i] < alone {
-                        (cost[i], splits[i - 1]) = (shared[i], of_left[i]);
-                    }
-                }
-                costs.push(cost);
-            }
+/// The tree below an open node, without what is elsewhere: that comes back open, its place is kept. The numbers
+/// of leaves are not there yet.
+fn grow(
+    nodes: &[BinaryNode],
+    cuts: &Cuts,
+    root: Open,
+    is_elsewhere: impl Fn(u32) -> bool,
+) -> (WideTree, Vec<Open>) {
+    let mut wide = WideTree { nodes: vec![WideNode::default()], ..WideTree::default() };
+    let mut elsewhere = Vec::new();
+    // An explicit stack, depth first.
+    let mut stack = vec![root];
+    while let Some(open) = stack.pop() {
+        if is_elsewhere(open.binary) {
+            elsewhere.push(open);
+            continue;
+        }
+        let mut node = WideNode::new(nodes, cuts, open.binary);
+        node.first = wide.nodes.len() as u32;
+        wide.nodes[open.place] = node;
+        wide.nodes.resize(node.inner().end, WideNode::default());
+        wide.depth = wide.depth.max(open.depth);
+        let behind = open.behind + usize::from(node.count) - 1;
+        wide.pending = wide.pending.max(behind + 1);
+        for (&binary, place) in node.children().iter().zip(node.inner()) {
+            stack.push(Open { binary, place, depth: open.depth + 1, behind });
         }
     }
-    splits
-}
-
-/// The children of the wide node that begins at `root`.
-fn children(tree: &[BinaryNode], splits: &[Splits], root: u32) -> WideNode {
-    let (mut inner, mut leaves) = (Vec::with_capacity(WIDTH), Vec::with_capacity(WIDTH));
-    // Nodes that may be left out, with how many children their left part would get then; leftmost last.
-    let mut open = Vec::with_capacity(WIDTH);
-    open.push((root, WIDTH, splits[root as usize][0]));
-    while let Some((node, count, of_left)) = open.pop() {
-        match tree[node as usize].kind {
-            Kind::Leaf { .. } => leaves.push(node),
-            Kind::Inner(_) if of_left == 0 => inner.push(node),
-            Kind::Inner([left, right]) => {
-                let left_count = usize::from(of_left);
-                for (node, count) in [(right, count - left_count), (left, left_count)] {
-                    let of_left = if count > 1 { splits[node as usize][count - 1] } else { 0 };
-                    open.push((node, count, of_left));
-                }
-            }
-        }
-    }
-    let mut node = WideNode { inner: inner.len() as u8, ..WideNode::default() };
-    node.count = node.inner + leaves.len() as u8;
-    for (place, child) in node.children.iter_mut().zip(inner.into_iter().chain(leaves)) {
-        *place = child;
-    }
-    node
+    (wide, elsewhere)
 }

@@ -5,8 +5,8 @@
 //! built or traversed.
 
 use super::backend_error;
-use super::binned::{self, BinaryNode, PrimitiveBox};
 use super::block::{self, Block, Meshes, Numbers};
+use super::build::{self, BinaryNode, PrimitiveBox, Quality, build};
 use super::collapse::{WideNode, WideTree, collapse};
 use super::node::{Kind, LEAF_UNITS, NODE_UNITS, Node, Reference, UNIT, WIDTH};
 use crate::error::Result;
@@ -73,7 +73,7 @@ impl Hierarchy {
     ///
     /// # Errors
     /// When there are 2^30 triangles or 2^27 instances or more, or not enough memory.
-    pub(super) fn build(geometry: &Geometry) -> Result<Self> {
+    pub(super) fn build(geometry: &Geometry, quality: Quality) -> Result<Self> {
         // References have 30 bits.
         let triangles = geometry.stored_triangles();
         let instances = geometry.instances.len();
@@ -87,12 +87,12 @@ impl Hierarchy {
         let units =
             triangles * (NODE_UNITS + LEAF_UNITS) + (geometry.instances.len() + trees) * NODE_UNITS;
         let mut all = Self { units: Arena::zeroed(units).ok_or_else(memory)?, ..Self::default() };
-        all.own = all.add_meshes(&geometry.meshes)?;
+        all.own = all.add_meshes(&geometry.meshes, quality)?;
         for object in &geometry.objects {
-            let tree = all.add_meshes(&object.meshes)?;
+            let tree = all.add_meshes(&object.meshes, quality)?;
             all.objects.push(tree);
         }
-        all.add_instances(geometry)?;
+        all.add_instances(geometry, quality)?;
         all.world_size = all.own.size.max(all.instances.size);
         all.units.truncate(all.used);
         Ok(all)
@@ -174,17 +174,18 @@ impl Hierarchy {
     }
 
     /// A tree over the triangles of some meshes.
-    fn add_meshes(&mut self, meshes: &[TriangleMesh]) -> Result<Tree> {
+    fn add_meshes(&mut self, meshes: &[TriangleMesh], quality: Quality) -> Result<Tree> {
+        let tree = build(build::boxes(meshes), block::SIZE, quality);
         let meshes = Meshes::new(meshes);
-        let (tree, order) = binned::build(meshes.boxes(), block::SIZE);
         let wide = collapse(&tree);
+        let order = &tree.order;
         let leaf = |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize]);
-        let root = self.add_tree(&tree, &wide, Some(&leaf))?;
-        Ok(Tree::new(root, bounds(&tree), &wide, meshes.into_numbers()))
+        let root = self.add_tree(&tree.nodes, &wide, Some(&leaf))?;
+        Ok(Tree::new(root, bounds(&tree.nodes), &wide, meshes.into_numbers()))
     }
 
     /// The tree over the instances.
-    fn add_instances(&mut self, geometry: &Geometry) -> Result<()> {
+    fn add_instances(&mut self, geometry: &Geometry, quality: Quality) -> Result<()> {
         let inverse = |i: &Instance| i.world_from_object.to_f64().inverse();
         self.object_from_world = geometry.instances.iter().map(inverse).collect();
         let mut boxes = Vec::new();
@@ -201,16 +202,16 @@ impl Hierarchy {
                 let largest = around.min.abs().max(around.max.abs()).max_element();
                 let margin = Vec3::splat(largest * 1e-6);
                 let bounds = Aabb { min: around.min - margin, max: around.max + margin };
-                boxes.push(PrimitiveBox { bounds, id });
+                boxes.push(PrimitiveBox::new(&bounds, id));
             }
         }
-        let (tree, order) = binned::build(boxes, 1);
+        let tree = build(boxes, 1, quality);
         let wide = collapse(&tree);
-        let root = self.add_tree(&tree, &wide, None::<&fn(u32, u32) -> Block>)?;
+        let root = self.add_tree(&tree.nodes, &wide, None::<&fn(u32, u32) -> Block>)?;
         let children = wide.nodes.iter().flat_map(WideNode::children);
-        let leaves = children.filter_map(|&child| leaf_range(&tree[child as usize]));
-        self.order = leaves.map(|(start, _)| order[start as usize]).collect();
-        self.instances = Tree::new(root, bounds(&tree), &wide, Numbers::new(&[]));
+        let leaves = children.filter_map(|&child| leaf_range(&tree.nodes[child as usize]));
+        self.order = leaves.map(|(start, _)| tree.order[start as usize]).collect();
+        self.instances = Tree::new(root, bounds(&tree.nodes), &wide, Numbers::new(&[]));
         Ok(())
     }
 
@@ -244,7 +245,7 @@ impl Hierarchy {
             let source = &wide.nodes[i];
             let mut boxes = [Aabb::EMPTY; WIDTH];
             for (bounds, &child) in boxes.iter_mut().zip(source.children()) {
-                *bounds = tree[child as usize].bounds;
+                *bounds = tree[child as usize].bounds();
             }
             let boxes = &boxes[..source.children().len()];
             let instances = leaf.is_none().then_some(source.leaves_before as usize);
@@ -287,12 +288,39 @@ impl Hierarchy {
 
 /// The range of primitives of a leaf.
 fn leaf_range(node: &BinaryNode) -> Option<(u32, u32)> {
-    match node.kind {
-        binned::Kind::Leaf { start, end } => Some((start, end)),
-        binned::Kind::Inner(_) => None,
+    match node.kind() {
+        build::Kind::Leaf { start, end } => Some((start, end)),
+        build::Kind::Inner(_) => None,
     }
 }
 
 fn bounds(tree: &[BinaryNode]) -> Aabb {
-    tree.first().map_or(Aabb::EMPTY, |root| root.bounds)
+    tree.first().map_or(Aabb::EMPTY, BinaryNode::bounds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::CounterRng;
+
+    /// More triangles than one thread builds over alone.
+    #[test]
+    fn the_number_of_threads_changes_no_byte() {
+        let mut rng = CounterRng::new(0);
+        let mut number = || rng.unit() * rng.unit();
+        let positions: Vec<_> = (0..90_002).map(|_| [number(), number(), number()]).collect();
+        let triangles = (0..90_000).map(|i| [i, i + 1, i + 2]).collect();
+        let meshes = vec![TriangleMesh::new(positions, triangles, false)];
+        let geometry = Geometry { meshes, ..Geometry::default() };
+        for quality in [Quality::Fast, Quality::Default, Quality::High] {
+            let bytes = [1, 2, 3, 8].map(|threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                let hierarchy =
+                    pool.expect("threads").install(|| Hierarchy::build(&geometry, quality));
+                bytemuck::cast_slice::<_, u8>(&hierarchy.expect("it builds").units).to_vec()
+            });
+            assert!(bytes[0].len() > 90_000 * 30);
+            assert!(bytes.iter().all(|other| *other == bytes[0]), "{quality:?}");
+        }
+    }
 }

@@ -7,9 +7,10 @@
 #![allow(unsafe_code)]
 
 mod answers;
-mod binned;
 mod block;
+mod build;
 mod collapse;
+mod cut;
 mod flight;
 mod hierarchy;
 mod kernel;
@@ -20,6 +21,7 @@ mod validate;
 mod walk;
 mod woop;
 
+pub use build::Quality;
 pub use kernel::Steps;
 pub use validate::TreeStatistics;
 
@@ -51,12 +53,20 @@ impl Bvh {
     /// # Errors
     /// When there are 2^30 triangles or more, not enough memory, or no threads.
     pub fn build(geometry: Arc<Geometry>, threads: usize) -> Result<Self> {
+        Self::with_quality(geometry, threads, Quality::Default)
+    }
+
+    /// [`Bvh::build`] with more or less work on the hierarchy.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_quality(geometry: Arc<Geometry>, threads: usize, quality: Quality) -> Result<Self> {
         let start = Instant::now();
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
             .map_err(|error| backend_error(&error.to_string()))?;
-        let hierarchy = pool.install(|| Hierarchy::build(&geometry))?;
+        let hierarchy = pool.install(|| Hierarchy::build(&geometry, quality))?;
         if hierarchy.pending() + slot::SPARE > slot::ROOM {
             return Err(backend_error("the hierarchy is too deep"));
         }

@@ -2,7 +2,7 @@
 //!
 //! Knows references, not what they refer to.
 
-use super::binned::HALVE_FROM;
+use super::build::HALVE_FROM;
 use super::hierarchy::Hierarchy;
 use super::kernel::Inside;
 use super::node::{Reference, WIDTH};

@@ -23,6 +23,8 @@ pub struct TreeStatistics {
     /// Steps that a random ray through the box of everything is expected to take: the surface of all nodes and leaves
     /// of a tree over that of its root, of the costliest tree.
     pub sah_cost: f64,
+    /// Bytes of everything ([`BuildStats::bytes`](crate::accel::BuildStats)) over the triangles in leaves.
+    pub bytes_per_triangle: f64,
 }
 
 impl Bvh {
@@ -47,6 +49,7 @@ impl Bvh {
         }
         let seen = Walk::new(&self.hierarchy, &self.hierarchy.instances, None).run()?.leaves;
         ensure(seen == self.hierarchy.instance_count(), "an instance is missing")?;
+        all.bytes_per_triangle = self.stats.bytes as f64 / all.triangles.max(1) as f64;
         Ok(all)
     }
 }

@@ -1,0 +1,221 @@
+//! Subtrees over few primitives: sorted along each axis, and cut where leaves come out full.
+//!
+//! Source of the sweep: J. D. MacDonald, K. S. Booth, "Heuristics for ray tracing using space subdivision", The
+//! Visual Computer 6(3), 1990. A leaf costs the same with one primitive as with all that it has room for, so
+//! cuts are at multiples of that, counted from either end: fewer planes to weigh, and few leaves that are not full.
+
+use super::bins::{Grid, cheapest_axis};
+use super::node::Nodes;
+use super::primitive::{Bounds, Centers, PrimitiveBox};
+use super::range::Range;
+use super::{HALVE_FROM, Settings};
+use glam::Vec4;
+
+/// Most primitives.
+pub(super) const MOST: usize = 16;
+/// Keeps an index below [`MOST`], for the compiler to see.
+const MASK: usize = MOST - 1;
+
+/// Room to work in, used again and again.
+pub(super) struct Sweep {
+    bounds: [Bounds; MOST],
+    ids: [u32; MOST],
+    /// The primitives in the order of their centres along each axis; a part has the same places in each.
+    sorted: [[u8; MOST]; 3],
+    /// Where a part may be cut, its start and its end included.
+    cuts: [u8; MOST + 1],
+    /// Boxes between cuts, along each axis.
+    pieces: [[Bounds; 3]; MOST],
+    /// Leaves that so many primitives fill.
+    leaves: [f32; MOST],
+    leaf_size: usize,
+}
+
+/// Places of primitives that are to become a subtree.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    start: usize,
+    end: usize,
+    node: usize,
+    depth: u32,
+    /// The axis along which it has been cut off.
+    axis: usize,
+}
+
+/// Between two pieces along an axis.
+struct Cut {
+    axis: usize,
+    /// The first piece on the right.
+    piece: usize,
+}
+
+impl Sweep {
+    pub(super) fn new(settings: &Settings) -> Self {
+        let leaf_size = 1 << settings.leaf_shift;
+        Self {
+            bounds: [Bounds::EMPTY; MOST],
+            ids: [0; MOST],
+            sorted: [[0; MOST]; 3],
+            cuts: [0; MOST + 1],
+            pieces: [[Bounds::EMPTY; 3]; MOST],
+            leaves: std::array::from_fn(|n| n.div_ceil(leaf_size) as f32),
+            leaf_size,
+        }
+    }
+
+    /// Builds the subtree over at most [`MOST`] primitives.
+    pub(super) fn build(&mut self, range: Range<'_>, nodes: &mut Nodes) {
+        self.sort(range.here, &range.centers);
+        let Range { node, depth, .. } = range;
+        let mut stack = [Part::default(); MOST];
+        stack[0] = Part { start: 0, end: range.here.len(), node, depth, axis: 0 };
+        let mut len = 1;
+        while len > 0 {
+            len -= 1;
+            let part = stack[len & MASK];
+            let Part { start, end, node, depth, .. } = part;
+            if end - start <= self.leaf_size {
+                for (place, i) in range.order[start..end].iter_mut().zip(start..) {
+                    *place = self.ids[self.sorted[part.axis][i & MASK] as usize & MASK];
+                }
+                nodes.leaf(node, range.first + start as u32, (end - start) as u32);
+                continue;
+            }
+            let pieces = self.find_pieces(&part);
+            let Cut { axis, piece } = self.best_cut(&part, pieces);
+            let middle = self.cuts[piece] as usize;
+            // Otherwise both sides are leaves.
+            if end - start > 2 * self.leaf_size {
+                self.distribute(&part, axis, middle);
+            }
+            let union = |a: Bounds, j: usize| a.union(self.pieces[j & MASK][axis]);
+            let left = (0..piece).fold(Bounds::EMPTY, union);
+            let right = (piece..pieces).fold(Bounds::EMPTY, union);
+            let child = nodes.split(node, &[left, right]);
+            let depth = depth + 1;
+            stack[len & MASK] = Part { start: middle, end, node: child + 1, depth, axis };
+            stack[(len + 1) & MASK] = Part { start, end: middle, node: child, depth, axis };
+            len += 2;
+        }
+    }
+
+    /// Takes the primitives over, and sorts them along each axis.
+    #[inline(always)]
+    fn sort(&mut self, primitives: &[PrimitiveBox], centers: &Centers) {
+        let n = primitives.len().min(MOST);
+        // So fine that it hardly matters who is first in a bin; the number makes all keys differ.
+        let grid = Grid::new(centers, 1024);
+        let mut keys = [[i16::MAX; MOST]; 3];
+        for (i, p) in primitives[..n].iter().enumerate() {
+            self.bounds[i & MASK] = p.bounds();
+            self.ids[i & MASK] = p.id();
+            for (keys, bin) in keys.iter_mut().zip(grid.of(p.center2())) {
+                keys[i & MASK] = (bin * MOST + i) as i16;
+            }
+        }
+        for (sorted, keys) in self.sorted.iter_mut().zip(&keys) {
+            // A primitive's place is the number of keys below its own.
+            let mut places = [0_i16; MOST];
+            // Bit by bit: the compiler is to make vectors of the inner loop, not of this one.
+            let mut rest = (1_u32 << n) - 1;
+            while rest != 0 {
+                let key = keys[rest.trailing_zeros() as usize & MASK];
+                rest &= rest - 1;
+                for (place, &other) in places.iter_mut().zip(keys) {
+                    *place += i16::from(key < other);
+                }
+            }
+            for (i, &place) in places[..n].iter().enumerate() {
+                sorted[place as usize & MASK] = i as u8;
+            }
+        }
+    }
+
+    /// Where a part may be cut, and the boxes between; returns how many.
+    #[inline(always)]
+    fn find_pieces(&mut self, part: &Part) -> usize {
+        let odd = (part.end - part.start) & (self.leaf_size - 1);
+        let mut pieces = 0;
+        for at in (part.start..part.end).step_by(self.leaf_size) {
+            self.cuts[pieces & MASK] = at as u8;
+            pieces += 1;
+            // As many from here as are too many: the rest is a multiple.
+            self.cuts[pieces & MASK] = (at + odd) as u8;
+            pieces += usize::from(odd != 0 && at + odd < part.end);
+        }
+        let pieces = pieces.min(MOST);
+        self.cuts[pieces] = part.end as u8;
+        for (axis, sorted) in self.sorted.iter().enumerate() {
+            let bounds = |i: usize| self.bounds[sorted[i & MASK] as usize & MASK];
+            let mut i = part.start;
+            for (piece, &end) in self.pieces[..pieces].iter_mut().zip(&self.cuts[1..]) {
+                let mut union = bounds(i);
+                i += 1;
+                while i < usize::from(end) {
+                    union = union.union(bounds(i));
+                    i += 1;
+                }
+                piece[axis] = union;
+            }
+        }
+        pieces
+    }
+
+    /// The cheapest cut of a part; the middle one where none is better than another, and deep down.
+    #[inline(always)]
+    fn best_cut(&self, part: &Part, pieces: usize) -> Cut {
+        let pieces = pieces.min(MOST);
+        let leaves = |from: usize, to: usize| self.leaves[(to - from) & MASK];
+        // From the right: what each cut leaves there. All axes at once, one in each lane.
+        let mut right = [Vec4::ZERO; MOST];
+        let mut union = self.pieces[(pieces - 1) & MASK];
+        for j in (1..pieces).rev() {
+            let leaves = leaves(self.cuts[j] as usize, part.end);
+            right[j] = Bounds::half_areas(&union) * leaves;
+            add(&mut union, &self.pieces[j - 1]);
+        }
+        let mut union = self.pieces[0];
+        let (mut least, mut best) = (Vec4::INFINITY, Vec4::ZERO);
+        for (j, right) in right.iter().enumerate().take(pieces).skip(1) {
+            let leaves = leaves(part.start, self.cuts[j] as usize);
+            let cost = Bounds::half_areas(&union) * leaves + right;
+            let is_less = cost.cmplt(least);
+            least = Vec4::select(is_less, cost, least);
+            best = Vec4::select(is_less, Vec4::splat(j as f32), best);
+            add(&mut union, &self.pieces[j]);
+        }
+        let axis = cheapest_axis(least);
+        let piece = best[axis] as usize & MASK;
+        let is_any = piece > 0 && part.depth < HALVE_FROM;
+        if is_any { Cut { axis, piece } } else { Cut { axis: 0, piece: pieces / 2 } }
+    }
+
+    /// Brings the orders along the other axes in line with a cut, in whose own order the left side comes first.
+    #[inline(always)]
+    fn distribute(&mut self, part: &Part, axis: usize, middle: usize) {
+        let mut on_right = 0_u32;
+        for i in middle..part.end {
+            on_right |= 1 << (self.sorted[axis][i & MASK] & MASK as u8);
+        }
+        for other in [(axis + 1) % 3, (axis + 2) % 3] {
+            let sorted = &mut self.sorted[other];
+            let old = *sorted;
+            let (mut left, mut right) = (part.start, middle);
+            for i in part.start..part.end {
+                let p = old[i & MASK];
+                let is_right = on_right >> (p & MASK as u8) & 1 != 0;
+                sorted[if is_right { right } else { left } & MASK] = p;
+                left += usize::from(!is_right);
+                right += usize::from(is_right);
+            }
+        }
+    }
+}
+
+/// Makes boxes larger, so that they hold others.
+#[inline(always)]
+fn add(boxes: &mut [Bounds; 3], others: &[Bounds; 3]) {
+    for (a, b) in boxes.iter_mut().zip(others) {
+        *a = a.union(*b);
+    }
+}
