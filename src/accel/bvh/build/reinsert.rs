@@ -31,14 +31,21 @@ pub(super) fn improve(tree: BinaryTree, Reinsertion { passes, share }: Reinserti
         return tree;
     }
     let mut open = OpenTree::new(tree.nodes.clone());
+    // To choose from in each pass: nodes that are much smaller will not be among the largest.
+    let all: Vec<u32> = (1..open.nodes.len() as u32).collect();
+    let count = all.len().div_ceil(share);
+    let some = open.largest(&all, 4 * count);
     for _ in 0..passes {
-        open.pass(share);
+        let largest = open.largest(&some, count);
+        open.pass(&largest);
     }
-    if open.depth() > MOST_DEPTH {
+    let (laid_out, depth) = lay_out(&open.nodes);
+    if depth > MOST_DEPTH {
         return tree;
     }
     drop(tree.nodes);
-    lay_out(&open.nodes, tree.order)
+    let (top, subtrees) = laid_out;
+    top.join(&subtrees, tree.order)
 }
 
 /// A tree whose nodes know their parents. Siblings stay side by side, in any order else.
@@ -85,15 +92,20 @@ impl OpenTree {
         half_area(&self.bounds(node))
     }
 
-    /// Looks for places for the largest nodes, one in `share`, and moves them.
-    fn pass(&mut self, share: usize) {
-        let mut largest: Vec<(f32, u32)> =
-            (1..self.nodes.len() as u32).into_par_iter().map(|i| (self.area(i), i)).collect();
-        let count = largest.len().div_ceil(share);
-        largest.select_nth_unstable_by(count - 1, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        largest.truncate(count);
-        let find = |stack: &mut Vec<_>, &(_, node): &(f32, u32)| self.find_place(node, stack);
-        let mut moves: Vec<Move> = largest.par_iter().map_init(Vec::new, find).flatten().collect();
+    /// The `count` largest of some nodes.
+    fn largest(&self, some: &[u32], count: usize) -> Vec<u32> {
+        let mut keys: Vec<(f32, u32)> = some.par_iter().map(|&i| (self.area(i), i)).collect();
+        if count < keys.len() {
+            keys.select_nth_unstable_by(count, |a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            keys.truncate(count);
+        }
+        keys.into_iter().map(|(_, node)| node).collect()
+    }
+
+    /// Looks for places for some nodes, and moves them.
+    fn pass(&mut self, some: &[u32]) {
+        let find = |stack: &mut Vec<_>, &node: &u32| self.find_place(node, stack);
+        let mut moves: Vec<Move> = some.par_iter().map_init(Vec::new, find).flatten().collect();
         moves.par_sort_unstable_by(|a, b| b.saved.total_cmp(&a.saved).then(a.node.cmp(&b.node)));
         let mut is_touched = vec![false; self.nodes.len()];
         for one in moves {
@@ -211,44 +223,44 @@ impl OpenTree {
             node = self.parents[pair(node)];
         }
     }
-
-    /// Longest way from the root to a leaf.
-    fn depth(&self) -> u32 {
-        let mut most = 0;
-        let mut stack = vec![(0_u32, 0)];
-        while let Some((node, depth)) = stack.pop() {
-            most = most.max(depth);
-            if let Kind::Inner(children) = self.nodes[node as usize].kind() {
-                stack.extend(children.map(|child| (child, depth + 1)));
-            }
-        }
-        most
-    }
 }
 
-/// The same tree with its nodes in the order that is promised.
-fn lay_out(nodes: &[BinaryNode], order: Vec<u32>) -> BinaryTree {
-    let (top, below) = copy(nodes, 0, TOP);
-    let subtree = |&(place, node): &(usize, u32)| (place, copy(nodes, node, u32::MAX).0);
-    let subtrees: Vec<_> = below.par_iter().map(subtree).collect();
-    top.join(&subtrees, order)
+/// The top of a tree, and the subtrees below with their places in it.
+type Parts = (Nodes, Vec<(usize, Nodes)>);
+
+/// The same tree with its nodes in the order that is promised, and its depth.
+fn lay_out(nodes: &[BinaryNode]) -> (Parts, u32) {
+    let top = copy(nodes, 0, TOP);
+    let subtree = |&(place, node): &(usize, u32)| (place, copy(nodes, node, u32::MAX));
+    let below: Vec<_> = top.below.par_iter().map(subtree).collect();
+    let depth = below.iter().map(|(_, copied)| copied.depth).max().unwrap_or(0);
+    let below = below.into_iter().map(|(place, copied)| (place, copied.nodes)).collect();
+    ((top.nodes, below), top.depth + depth)
 }
 
-/// A subtree down to some depth, and what begins there: places in the copy, and nodes.
-fn copy(nodes: &[BinaryNode], root: u32, depth: u32) -> (Nodes, Vec<(usize, u32)>) {
+/// A copy of a subtree.
+struct Copied {
+    nodes: Nodes,
+    depth: u32,
+    /// What begins where the copy was broken off: places in the copy, and nodes.
+    below: Vec<(usize, u32)>,
+}
+
+/// Copies a subtree down to some depth.
+fn copy(nodes: &[BinaryNode], root: u32, most_depth: u32) -> Copied {
     let bounds = |node: u32| Bounds::around(&nodes[node as usize].bounds());
-    let mut copied = Nodes::new(&bounds(root), 1);
-    let mut below = Vec::new();
+    let mut copied = Copied { nodes: Nodes::new(&bounds(root), 1), depth: 0, below: Vec::new() };
     let mut stack = vec![(0, root, 0)];
-    while let Some((place, node, at)) = stack.pop() {
+    while let Some((place, node, depth)) = stack.pop() {
+        copied.depth = copied.depth.max(depth);
         match nodes[node as usize].kind() {
-            _ if at == depth => below.push((place, node)),
+            _ if depth == most_depth => copied.below.push((place, node)),
             Kind::Inner([left, right]) => {
-                let child = copied.split(place, &[bounds(left), bounds(right)]);
-                stack.extend([(child + 1, right, at + 1), (child, left, at + 1)]);
+                let child = copied.nodes.split(place, &[bounds(left), bounds(right)]);
+                stack.extend([(child + 1, right, depth + 1), (child, left, depth + 1)]);
             }
-            Kind::Leaf { start, end } => copied.leaf(place, start, end - start),
+            Kind::Leaf { start, end } => copied.nodes.leaf(place, start, end - start),
         }
     }
-    (copied, below)
+    copied
 }
