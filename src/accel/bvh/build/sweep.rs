@@ -1,8 +1,8 @@
-//! Subtrees over few primitives: sorted along each axis, and cut where leaves come out full.
+//! Subtrees over few primitives: sorted along each axis, and cut wherever it is cheapest.
 //!
 //! Source of the sweep: J. D. MacDonald, K. S. Booth, "Heuristics for ray tracing using space subdivision", The
-//! Visual Computer 6(3), 1990. A leaf costs the same with one primitive as with all that it has room for, so
-//! cuts are at multiples of that, counted from either end: fewer planes to weigh, and few leaves that are not full.
+//! Visual Computer 6(3), 1990. A leaf costs the same with one primitive as with all that it has room for: that makes leaves
+//! come out full.
 
 use super::bins::{Grid, cheapest_axis};
 use super::node::Nodes;
@@ -22,10 +22,8 @@ pub(super) struct Sweep {
     ids: [u32; MOST],
     /// The primitives in the order of their centres along each axis; a part has the same places in each.
     sorted: [[u8; MOST]; 3],
-    /// Where a part may be cut, its start and its end included.
-    cuts: [u8; MOST + 1],
-    /// Boxes between cuts, along each axis.
-    pieces: [[Bounds; 3]; MOST],
+    /// Boxes in the order along each axis.
+    in_order: [[Bounds; 3]; MOST],
     /// Leaves that so many primitives fill.
     leaves: [f32; MOST],
     leaf_size: usize,
@@ -42,11 +40,11 @@ struct Part {
     axis: usize,
 }
 
-/// Between two pieces along an axis.
+/// Between two primitives along an axis.
 struct Cut {
     axis: usize,
-    /// The first piece on the right.
-    piece: usize,
+    /// How many are on the left.
+    left: usize,
 }
 
 impl Sweep {
@@ -56,8 +54,7 @@ impl Sweep {
             bounds: [Bounds::EMPTY; MOST],
             ids: [0; MOST],
             sorted: [[0; MOST]; 3],
-            cuts: [0; MOST + 1],
-            pieces: [[Bounds::EMPTY; 3]; MOST],
+            in_order: [[Bounds::EMPTY; 3]; MOST],
             leaves: std::array::from_fn(|n| n.div_ceil(leaf_size) as f32),
             leaf_size,
         }
@@ -81,16 +78,16 @@ impl Sweep {
                 nodes.leaf(node, range.first + start as u32, (end - start) as u32);
                 continue;
             }
-            let pieces = self.find_pieces(&part);
-            let Cut { axis, piece } = self.best_cut(&part, pieces);
-            let middle = self.cuts[piece] as usize;
+            self.put_in_order(&part);
+            let Cut { axis, left: count } = self.best_cut(&part);
+            let middle = start + count;
             // Otherwise both sides are leaves.
             if end - start > 2 * self.leaf_size {
                 self.distribute(&part, axis, middle);
             }
-            let union = |a: Bounds, j: usize| a.union(self.pieces[j & MASK][axis]);
-            let left = (0..piece).fold(Bounds::EMPTY, union);
-            let right = (piece..pieces).fold(Bounds::EMPTY, union);
+            let union = |a: Bounds, j: usize| a.union(self.in_order[j & MASK][axis]);
+            let left = (0..count).fold(Bounds::EMPTY, union);
+            let right = (count..end - start).fold(Bounds::EMPTY, union);
             let child = nodes.split(node, &[left, right]);
             let depth = depth + 1;
             stack[len & MASK] = Part { start: middle, end, node: child + 1, depth, axis };
@@ -131,63 +128,41 @@ impl Sweep {
         }
     }
 
-    /// Where a part may be cut, and the boxes between; returns how many.
+    /// Puts the boxes of a part in order.
     #[inline(always)]
-    fn find_pieces(&mut self, part: &Part) -> usize {
-        let odd = (part.end - part.start) & (self.leaf_size - 1);
-        let mut pieces = 0;
-        for at in (part.start..part.end).step_by(self.leaf_size) {
-            self.cuts[pieces & MASK] = at as u8;
-            pieces += 1;
-            // As many from here as are too many: the rest is a multiple.
-            self.cuts[pieces & MASK] = (at + odd) as u8;
-            pieces += usize::from(odd != 0 && at + odd < part.end);
-        }
-        let pieces = pieces.min(MOST);
-        self.cuts[pieces] = part.end as u8;
+    fn put_in_order(&mut self, part: &Part) {
         for (axis, sorted) in self.sorted.iter().enumerate() {
-            let bounds = |i: usize| self.bounds[sorted[i & MASK] as usize & MASK];
-            let mut i = part.start;
-            for (piece, &end) in self.pieces[..pieces].iter_mut().zip(&self.cuts[1..]) {
-                let mut union = bounds(i);
-                i += 1;
-                while i < usize::from(end) {
-                    union = union.union(bounds(i));
-                    i += 1;
-                }
-                piece[axis] = union;
+            for (boxes, i) in self.in_order.iter_mut().zip(part.start..part.end) {
+                boxes[axis] = self.bounds[sorted[i & MASK] as usize & MASK];
             }
         }
-        pieces
     }
 
     /// The cheapest cut of a part; the middle one where none is better than another, and deep down.
     #[inline(always)]
-    fn best_cut(&self, part: &Part, pieces: usize) -> Cut {
-        let pieces = pieces.min(MOST);
-        let leaves = |from: usize, to: usize| self.leaves[(to - from) & MASK];
+    fn best_cut(&self, part: &Part) -> Cut {
+        let n = (part.end - part.start).min(MOST);
+        let leaves = |count: usize| self.leaves[count & MASK];
         // From the right: what each cut leaves there. All axes at once, one in each lane.
         let mut right = [Vec4::ZERO; MOST];
-        let mut union = self.pieces[(pieces - 1) & MASK];
-        for j in (1..pieces).rev() {
-            let leaves = leaves(self.cuts[j] as usize, part.end);
-            right[j] = Bounds::half_areas(&union) * leaves;
-            add(&mut union, &self.pieces[j - 1]);
+        let mut union = self.in_order[(n - 1) & MASK];
+        for left in (1..n).rev() {
+            right[left] = Bounds::half_areas(&union) * leaves(n - left);
+            add(&mut union, &self.in_order[left - 1]);
         }
-        let mut union = self.pieces[0];
+        let mut union = self.in_order[0];
         let (mut least, mut best) = (Vec4::INFINITY, Vec4::ZERO);
-        for (j, right) in right.iter().enumerate().take(pieces).skip(1) {
-            let leaves = leaves(part.start, self.cuts[j] as usize);
-            let cost = Bounds::half_areas(&union) * leaves + right;
+        for (left, right) in right.iter().enumerate().take(n).skip(1) {
+            let cost = Bounds::half_areas(&union) * leaves(left) + right;
             let is_less = cost.cmplt(least);
             least = Vec4::select(is_less, cost, least);
-            best = Vec4::select(is_less, Vec4::splat(j as f32), best);
-            add(&mut union, &self.pieces[j]);
+            best = Vec4::select(is_less, Vec4::splat(left as f32), best);
+            add(&mut union, &self.in_order[left]);
         }
         let axis = cheapest_axis(least);
-        let piece = best[axis] as usize & MASK;
-        let is_any = piece > 0 && part.depth < HALVE_FROM;
-        if is_any { Cut { axis, piece } } else { Cut { axis: 0, piece: pieces / 2 } }
+        let left = best[axis] as usize & MASK;
+        let is_any = left > 0 && part.depth < HALVE_FROM;
+        if is_any { Cut { axis, left } } else { Cut { axis: 0, left: n / 2 } }
     }
 
     /// Brings the orders along the other axes in line with a cut, in whose own order the left side comes first.
