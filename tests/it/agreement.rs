@@ -60,7 +60,8 @@ fn the_in_house_bvh_is_right_wherever_backends_differ() {
         }
         print(&scene.name, &total);
         for row in &total {
-            assert!(5 * row.hits > row.rays, "{}: rays that show nothing", scene.name);
+            let shows = !row.ours || 5 * row.hits > row.rays;
+            assert!(shows, "{}: rays that show nothing", scene.name);
             let is_insane = !row.ours && scene.is_ordinary && row.unlawful > row.rays / 100;
             complaints.extend(is_insane.then(|| format!("{}, {}", scene.name, row.name)));
         }

@@ -82,7 +82,7 @@ impl Sweep {
             let Cut { axis, left: count } = self.best_cut(&part);
             let middle = start + count;
             // Otherwise both sides are leaves.
-            if end - start > 2 * self.leaf_size {
+            if count.max(end - middle) > self.leaf_size {
                 self.distribute(&part, axis, middle);
             }
             let union = |a: Bounds, j: usize| a.union(self.in_order[j & MASK][axis]);
