@@ -137,6 +137,9 @@ pub(super) struct Render {
     /// Backend that finds what rays hit
     #[arg(long, value_enum, default_value_t = Backend::Auto, help_heading = "Machine")]
     pub(super) accel: Backend,
+    /// Use no wider vector instructions than these; the picture is the same [default: the widest]
+    #[arg(long, value_name = "NAME", value_parser = named("instruction set", &Isa::ALL), help_heading = "Machine")]
+    pub(super) isa: Option<Isa>,
     /// Threads to use, up to 1024; 0 is one a core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads, help_heading = "Machine")]
     pub(super) threads: usize,
@@ -237,7 +240,7 @@ pub(super) enum Backend {
     Embree,
     /// The in-house BVH
     Bvh,
-    /// The best that this build has
+    /// The faster one on this machine: the in-house BVH where it has AVX-512
     Auto,
 }
 

@@ -14,7 +14,8 @@ mod select;
 mod statistics;
 mod values;
 
-use crate::error::Error;
+use crate::error::{Error, Result};
+use crate::os::Isa;
 use clap::Parser;
 use std::process::ExitCode;
 
@@ -41,4 +42,12 @@ pub fn main() -> ExitCode {
         report::error(&error);
         if matches!(error, Error::Usage(_)) { USAGE } else { FAILED }
     }))
+}
+
+/// The instructions to use: those asked for, or the widest of this machine.
+fn instructions(wanted: Option<Isa>) -> Result<Isa> {
+    match wanted.unwrap_or(Isa::detect()) {
+        isa if isa <= Isa::detect() => Ok(isa),
+        _ => Err(Error::Usage("--isa: this machine does not have these instructions".into())),
+    }
 }

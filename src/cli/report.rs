@@ -12,6 +12,7 @@ use crate::film::Region;
 use crate::geometry::PrimitiveId;
 use crate::image::{Attribute, write_whole};
 use crate::math::DVec3;
+use crate::os::Isa;
 use crate::render::Rendered;
 use crate::scene;
 use crate::trace::PixelSample;
@@ -35,6 +36,12 @@ pub(super) fn warnings(args: &Render, warnings: &[Warning]) {
     for warning in warnings {
         say(args, &format!("warning: {warning}"));
     }
+}
+
+/// Says which backend was taken, and why.
+pub(super) fn backend(args: &Render, name: &str) {
+    let isa = Isa::ALL.iter().find(|(_, isa)| *isa == Isa::current()).map_or("", |(name, _)| name);
+    say(args, &format!("rays are traced by {name}, the faster one with {isa} (--accel auto)"));
 }
 
 /// What will be rendered, defaults included.

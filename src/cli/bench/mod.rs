@@ -6,12 +6,11 @@ use super::args::{Bench, Up};
 use super::progress::{BAR, style};
 use super::select;
 use super::statistics::command;
-use super::{DONE, NOT_MET};
+use super::{DONE, NOT_MET, instructions};
 use crate::error::{Error, Result};
 use crate::image::{check_writable, write_whole};
 use crate::load::{self, LoadOptions, Surroundings};
 use crate::math::Rgb;
-use crate::os::Isa;
 use crate::scene::{self, ColorInput, Environment, Material, Surface};
 use crate::study::bench::{RayKind, Report, Settings, bench, most_threads};
 use crate::study::report;
@@ -81,10 +80,7 @@ fn say(args: &Bench, lines: &str) {
 }
 
 fn settings(args: &Bench) -> Result<Settings> {
-    let isa = args.isa.unwrap_or(Isa::detect());
-    if isa > Isa::detect() {
-        return Err(Error::Usage("--isa: this machine does not have these instructions".into()));
-    }
+    let isa = instructions(args.isa)?;
     let said = if args.threads.is_empty() { &[1, 0][..] } else { &args.threads };
     let mut threads: Vec<_> =
         said.iter().map(|&n| if n == 0 { most_threads() } else { n }).collect();
