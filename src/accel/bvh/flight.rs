@@ -32,7 +32,9 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Task for Batch<'_, F, A, ANY> {
         let kept = SLOTS.with(|slots| slots.borrow_mut().take());
         let mut slots = kept.unwrap_or_else(|| slot::slots(IN_FLIGHT));
         if self.rays.len() < FEW {
-            one_by_one(self, kernel, &mut slots[0]);
+            if let Some(slot) = slots.first_mut() {
+                one_by_one(self, kernel, slot);
+            }
         } else if let Some(slots) = slots.first_chunk_mut() {
             Flight { batch: self, slots, begun: 0 }.run(kernel);
         }

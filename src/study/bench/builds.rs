@@ -23,7 +23,7 @@ pub(super) trait Structure {
     fn contestants(&self) -> Vec<Contestant<'_>>;
 }
 
-/// Each structure is built so often at least, unless one round takes longer than the whole bench should.
+/// Each structure is built so often at least, unless that would take a quarter of the time of the whole bench.
 const FEWEST_ROUNDS: usize = 3;
 
 /// And so often at most, while all of it takes next to no time.
@@ -49,7 +49,7 @@ pub(super) fn build_all(
     let mut slots: Vec<_> = recipes.iter().map(|_| (None, Vec::new())).collect();
     for round in 0..MOST_ROUNDS {
         let spent = start.elapsed();
-        if spent > time || round >= FEWEST_ROUNDS && spent > time / 20 {
+        if spent > time / 4 || round >= FEWEST_ROUNDS && spent > time / 20 {
             break;
         }
         for (i, (recipe, (structure, seconds))) in recipes.iter().zip(&mut slots).enumerate() {
