@@ -119,9 +119,10 @@ impl Chosen {
 
 fn backend(wanted: Backend) -> Result<Chosen> {
     match wanted {
-        // README's table: with wide vectors the in-house BVH is ahead on every kind of scene.
+        // README's table: with wide vectors the in-house BVH is ahead on every kind of scene. `--isa` has no say, so
+        // that it changes no picture.
         #[cfg(feature = "bvh")]
-        Backend::Auto if cfg!(not(feature = "embree")) || Isa::current() == Isa::Avx512 => {
+        Backend::Auto if cfg!(not(feature = "embree")) || Isa::detect() == Isa::Avx512 => {
             Ok(Chosen::Bvh)
         }
         #[cfg(feature = "embree")]

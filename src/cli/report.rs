@@ -40,8 +40,14 @@ pub(super) fn warnings(args: &Render, warnings: &[Warning]) {
 
 /// Says which backend was taken, and why.
 pub(super) fn backend(args: &Render, name: &str) {
-    let isa = Isa::ALL.iter().find(|(_, isa)| *isa == Isa::current()).map_or("", |(name, _)| name);
-    say(args, &format!("rays are traced by {name}, the faster one with {isa} (--accel auto)"));
+    let widest =
+        Isa::ALL.iter().find(|(_, isa)| *isa == Isa::detect()).map_or("", |(name, _)| name);
+    say(
+        args,
+        &format!(
+            "rays are traced by {name}, the faster one on this machine ({widest}; --accel auto)"
+        ),
+    );
 }
 
 /// What will be rendered, defaults included.
