@@ -63,16 +63,11 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
         } else {
             self.consider_with_care(slot, inside, unsure)
         };
-        match ANY {
+        match (ANY, is_better) {
             // Down to the reference that ends it.
-            true => {
-                if is_better {
-                    1
-                } else {
-                    top
-                }
-            }
-            false => kernel.prune(slot),
+            (true, true) => 1,
+            (true, false) => top,
+            (false, _) => kernel.prune(slot),
         }
     }
 
