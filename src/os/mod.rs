@@ -6,10 +6,12 @@
 mod arena;
 mod clock;
 mod isa;
+mod prefetch;
 
 pub use arena::Arena;
 pub use clock::thread_seconds;
 pub use isa::{Isa, Kernel};
+pub use prefetch::prefetch;
 
 /// The most memory that this process has had resident, in bytes; 0 where the system does not say.
 pub fn peak_rss_bytes() -> u64 {

@@ -138,7 +138,13 @@ mod program {
     fn an_interrupted_command_leaves_nothing() {
         let bench = Bench::new();
         let output = std::process::Command::new("timeout")
-            .args(["--preserve-status", "--signal=INT", "0.5", env!("CARGO_BIN_EXE_glint")])
+            .args([
+                "--foreground",
+                "--preserve-status",
+                "--signal=INT",
+                "0.5",
+                env!("CARGO_BIN_EXE_glint"),
+            ])
             .args(["generate", "terrain", "-o", "a.obj", "--triangles", "1G"])
             .current_dir(bench.folder())
             .output()

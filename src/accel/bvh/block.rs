@@ -1,6 +1,8 @@
-//! Leaves: up to four triangles, as one array a coordinate. Knows no rays.
+//! Leaves: up to eight triangles over up to nine vertices, which neighbours share, in two cache lines. Knows no rays.
+//!
+//! A patch of two by two quadrilaterals is a full leaf; triangles that share nothing fill it in threes.
 
-use super::node::{LEAF_UNITS, UNIT};
+use super::node::UNIT;
 use crate::geometry::{PrimitiveId, TriangleMesh};
 use crate::math::Vec3;
 use bytemuck::{Pod, Zeroable};
@@ -8,43 +10,94 @@ use bytemuck::{Pod, Zeroable};
 /// Triangles a block, and so the most a leaf can have.
 pub(super) const SIZE: usize = 8;
 
-/// Up to four triangles: three cache lines, wherever it begins.
+/// Vertices a block.
+pub(super) const VERTICES: usize = 9;
+
+/// A leaf.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C, align(32))]
+#[repr(C, align(128))]
 pub(super) struct Block {
-    /// `corners[vertex][axis]`, a lane a triangle. Absent lanes have the first triangle once more.
-    pub(super) corners: [[[f32; SIZE]; 3]; 3],
-    /// Number of the triangle among those of all meshes of its hierarchy; in absent lanes with the uppermost bit.
-    pub(super) triangles: [u32; SIZE],
+    /// Eight vertices along x, along y and along z, then the ninth: no vector of eight crosses a cache line. Zeros where
+    /// there is none.
+    positions: [f32; 3 * VERTICES],
+    /// For each triangle the numbers of its three vertices, four bits each, the first one lowest. Absent ones have those of
+    /// the first triangle, and the sign.
+    pub(super) corners: [i16; SIZE],
+    /// Place of the first triangle in the order of its tree; the others follow.
+    pub(super) first: u32,
 }
 
-/// Marks lanes without a triangle.
-pub(super) const ABSENT: u32 = 1 << 31;
-
-const _: () = assert!(size_of::<Block>() == LEAF_UNITS * UNIT);
+const _: () = assert!(size_of::<Block>() == UNIT);
 
 impl Block {
-    /// The triangles of those numbers, one to four.
-    pub(super) fn new(meshes: &Meshes<'_>, triangles: &[u32]) -> Self {
-        let mut block = Self::zeroed();
-        for lane in 0..SIZE {
-            let triangle = triangles[if lane < triangles.len() { lane } else { 0 }];
-            block.triangles[lane] =
-                if lane < triangles.len() { triangle } else { triangle | ABSENT };
-            for (of_vertex, corner) in block.corners.iter_mut().zip(meshes.vertices(triangle)) {
-                for (axis, lanes) in of_vertex.iter_mut().enumerate() {
-                    lanes[lane] = corner[axis];
+    /// The triangles of those numbers, the first of which is at `first` in the tree's order.
+    ///
+    /// # Panics
+    /// If they are none, or do not fit.
+    pub(super) fn new(meshes: &Meshes<'_>, triangles: &[u32], first: u32) -> Self {
+        let mut block = Self { first, ..Self::zeroed() };
+        let mut known = [[0; 3]; VERTICES];
+        let mut count = 0;
+        for (corners, &triangle) in block.corners.iter_mut().zip(triangles) {
+            for (shift, corner) in [0, 4, 8].into_iter().zip(meshes.vertices(triangle)) {
+                // The same vertex has the same bits.
+                let bits = corner.to_array().map(f32::to_bits);
+                let number = known[..count].iter().position(|k| *k == bits).unwrap_or(count);
+                if number == count {
+                    known[count] = bits;
+                    count += 1;
+                    for axis in 0..3 {
+                        block.positions[place(axis, number)] = corner[axis];
+                    }
                 }
+                *corners |= (number << shift) as i16;
             }
         }
+        let absent = block.corners[0] | i16::MIN;
+        block.corners[triangles.len()..].fill(absent);
         block
+    }
+
+    /// Whether there is a triangle in that lane.
+    #[inline(always)]
+    pub(super) fn has(&self, lane: usize) -> bool {
+        self.corners[lane] >= 0
+    }
+
+    /// The numbers of the vertices of the triangle in that lane.
+    #[inline(always)]
+    pub(super) fn numbers(&self, lane: usize) -> [usize; 3] {
+        let corners = self.corners[lane] as usize;
+        [corners & 15, corners >> 4 & 15, corners >> 8 & 15]
     }
 
     /// The corners of the triangle in that lane.
     #[inline(always)]
     pub(super) fn vertices(&self, lane: usize) -> [Vec3; 3] {
-        self.corners.each_ref().map(|corner| Vec3::from(corner.each_ref().map(|axis| axis[lane])))
+        self.numbers(lane).map(|vertex| Vec3::from([0, 1, 2].map(|axis| self.along(axis, vertex))))
     }
+
+    /// A vertex along an axis.
+    #[inline(always)]
+    pub(super) fn along(&self, axis: usize, vertex: usize) -> f32 {
+        self.positions[place(axis, vertex)]
+    }
+
+    /// The first eight vertices along an axis, and the ninth.
+    #[inline(always)]
+    pub(super) fn nine(&self, axis: usize) -> (&[f32; 8], f32) {
+        debug_assert!(axis < 3);
+        // SAFETY: axes are 0, 1, 2: `Shear::new` makes no others, and without one they are zero.
+        let eight = unsafe { &*self.positions.as_ptr().wrapping_add(8 * axis).cast() };
+        // SAFETY: as above.
+        (eight, unsafe { *self.positions.get_unchecked(3 * 8 + axis) })
+    }
+}
+
+/// Where a vertex is among the positions.
+#[inline(always)]
+fn place(axis: usize, vertex: usize) -> usize {
+    if vertex < 8 { 8 * axis + vertex } else { 3 * 8 + axis }
 }
 
 /// The triangles of some meshes, numbered through.

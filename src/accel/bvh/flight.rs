@@ -12,7 +12,9 @@ use super::node::{Kind, Reference};
 use super::slot::{self, Slot};
 use super::walk::Batch;
 use crate::accel::HitFilter;
+use crate::os::prefetch;
 use std::cell::RefCell;
+use std::hint::select_unpredictable;
 
 /// Rays in flight, a power of two up to 64: enough to hide the memory's latency, few enough for the first-level cache.
 const IN_FLIGHT: usize = 64;
@@ -169,7 +171,7 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
     #[inline(always)]
     fn advance(&mut self, i: u32, top: usize, waiting: &mut Waiting) {
         let next = self.slots[i as usize & (IN_FLIGHT - 1)].pop(top);
-        prefetch(&self.batch.bvh.hierarchy, next);
+        ask(&self.batch.bvh.hierarchy, next);
         waiting.push(i, next);
     }
 
@@ -181,11 +183,12 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
         let slot = &mut self.slots[i as usize & (IN_FLIGHT - 1)];
         let hit = self.batch.test(kernel, slot);
         // What follows would be taken off the stack; a leaf that is hit stays, and waits for nothing.
-        let (top, leaf) = (slot.top, slot.next);
-        let follows = slot.pop(top as usize);
-        (slot.top, slot.next) = if hit { (top, leaf) } else { (slot.top, follows) };
-        prefetch(hierarchy, follows);
-        waiting.push(i, if hit { Reference::new(Kind::Node, 0) } else { follows });
+        let leaf = slot.next;
+        let follows = slot.pop(slot.top as usize);
+        slot.top += u32::from(hit);
+        slot.next = select_unpredictable(hit, leaf, follows);
+        ask(hierarchy, follows);
+        waiting.push(i, select_unpredictable(hit, Reference::new(Kind::Node, 0), follows));
         u64::from(hit) << i
     }
 
@@ -206,21 +209,10 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
     }
 }
 
-/// Asks for the two cache lines of a node, or the five of a leaf.
+/// Asks the memory for the two cache lines of a node or a leaf.
 #[inline(always)]
-fn prefetch(hierarchy: &Hierarchy, reference: Reference) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let start = hierarchy.place(reference);
-        // A node's lines once more, which costs nothing.
-        let leaf = 128 * (reference.kind() & 1);
-        for line in [0, 64, leaf, leaf + 64, 2 * leaf] {
-            let address = start.wrapping_add(line).cast::<i8>();
-            // SAFETY: a prefetch reads nothing, whatever the address.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(address) };
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (hierarchy, reference);
+fn ask(hierarchy: &Hierarchy, reference: Reference) {
+    let start = hierarchy.place(reference);
+    prefetch(start);
+    prefetch(start.wrapping_add(64));
 }

@@ -6,9 +6,9 @@
 
 use super::backend_error;
 use super::block::{self, Block, Meshes, Numbers};
-use super::build::{self, BinaryNode, PrimitiveBox, Quality, build};
+use super::build::{self, Anything, BinaryNode, PrimitiveBox, Quality, Room, Triangles, build};
 use super::collapse::{WideNode, WideTree, collapse};
-use super::node::{Kind, LEAF_UNITS, NODE_UNITS, Node, Reference, UNIT, WIDTH};
+use super::node::{Kind, Node, Reference, UNIT, WIDTH};
 use crate::error::Result;
 use crate::geometry::{Aabb, Geometry, Instance, TriangleMesh};
 use crate::math::{DAffine3, Vec3};
@@ -38,7 +38,7 @@ pub(super) struct Hierarchy {
 
 /// What nodes and leaves are made of.
 #[derive(Clone, Copy, Pod, Zeroable)]
-#[repr(C, align(32))]
+#[repr(C, align(128))]
 struct Unit([u8; UNIT]);
 
 /// One tree in the arena.
@@ -50,21 +50,29 @@ pub(super) struct Tree {
     pub(super) size: f32,
     /// The most references that a depth-first walk leaves for later.
     pub(super) pending: usize,
-    /// From numbers in leaves to primitives.
+    /// Triangles in the order of the leaves.
+    pub(super) order: Vec<u32>,
+    /// From those numbers to primitives.
     pub(super) numbers: Numbers,
 }
 
 impl Default for Tree {
     fn default() -> Self {
-        Self::new(None, Aabb::EMPTY, &WideTree::default(), Numbers::new(&[]))
+        Self::new(None, Aabb::EMPTY, &WideTree::default(), Vec::new(), Numbers::new(&[]))
     }
 }
 
 impl Tree {
-    fn new(root: Option<Reference>, bounds: Aabb, wide: &WideTree, numbers: Numbers) -> Self {
+    fn new(
+        root: Option<Reference>,
+        bounds: Aabb,
+        wide: &WideTree,
+        order: Vec<u32>,
+        numbers: Numbers,
+    ) -> Self {
         let size = bounds.min.abs().max(bounds.max.abs()).max_element();
         let size = if root.is_some() { size } else { 0.0 };
-        Self { root, bounds, size, pending: wide.pending, numbers }
+        Self { root, bounds, size, pending: wide.pending, order, numbers }
     }
 }
 
@@ -72,20 +80,19 @@ impl Hierarchy {
     /// Builds all trees.
     ///
     /// # Errors
-    /// When there are 2^30 triangles or 2^27 instances or more, or not enough memory.
+    /// When there are 2^30 triangles or instances or more, or not enough memory.
     pub(super) fn build(geometry: &Geometry, quality: Quality) -> Result<Self> {
         // References have 30 bits.
         let triangles = geometry.stored_triangles();
         let instances = geometry.instances.len();
-        if triangles.max(instances * LEAF_UNITS) >= Reference::NUMBERS {
-            return Err(backend_error("more than 2^30 triangles or 2^27 instances"));
+        if triangles.max(instances) >= Reference::NUMBERS {
+            return Err(backend_error("more than 2^30 triangles or instances"));
         }
         // Room for the most there can be: leaves of one triangle, and as many nodes. What is not written costs
         // nothing.
         let memory = || backend_error("not enough memory for the hierarchy");
         let trees = geometry.objects.len() + 2;
-        let units =
-            triangles * (NODE_UNITS + LEAF_UNITS) + (geometry.instances.len() + trees) * NODE_UNITS;
+        let units = 2 * triangles + instances + trees;
         let mut all = Self { units: Arena::zeroed(units).ok_or_else(memory)?, ..Self::default() };
         all.own = all.add_meshes(&geometry.meshes, quality)?;
         for object in &geometry.objects {
@@ -112,7 +119,7 @@ impl Hierarchy {
 
     /// Bytes of all of it.
     pub(super) fn bytes(&self) -> usize {
-        let numbers = |tree: &Tree| tree.numbers.bytes();
+        let numbers = |tree: &Tree| tree.numbers.bytes() + size_of_val(&*tree.order);
         size_of_val(&*self.units)
             + size_of_val(&*self.order)
             + size_of_val(&*self.object_from_world)
@@ -124,9 +131,9 @@ impl Hierarchy {
     /// Where the unit is that a reference to a node or a leaf names.
     #[inline(always)]
     pub(super) fn place(&self, reference: Reference) -> *const u8 {
-        // The kind falls off the upper end; the machine scales by eight.
-        const { assert!(UNIT == 32) };
-        let offset = (reference.0 << 2) as usize * 8;
+        // The kind falls off the upper end.
+        const { assert!(UNIT == 4 * 32) };
+        let offset = (reference.0 << 2) as usize * 32;
         self.units.as_ptr().cast::<u8>().wrapping_add(offset)
     }
 
@@ -148,20 +155,18 @@ impl Hierarchy {
 
     /// [`Self::node`], if it lies in the arena.
     pub(super) fn checked_node(&self, reference: Reference) -> Option<&Node> {
-        let is_there = reference.number() + NODE_UNITS <= self.units.len();
-        (is_there && reference.number().is_multiple_of(NODE_UNITS)).then(|| self.node(reference))
+        (reference.number() < self.units.len()).then(|| self.node(reference))
     }
 
     /// [`Self::block`], if it lies in the arena.
     pub(super) fn checked_block(&self, reference: Reference) -> Option<&Block> {
-        let is_there = reference.number() + LEAF_UNITS <= self.units.len();
-        is_there.then(|| self.block(reference))
+        (reference.number() < self.units.len()).then(|| self.block(reference))
     }
 
     /// The instance that is referred to.
     #[inline]
     pub(super) fn instance(&self, reference: Reference) -> Option<u32> {
-        self.order.get(reference.number() / LEAF_UNITS).copied()
+        self.order.get(reference.number()).copied()
     }
 
     /// The tree of an instance's object, or of the world's own meshes.
@@ -175,13 +180,17 @@ impl Hierarchy {
 
     /// A tree over the triangles of some meshes.
     fn add_meshes(&mut self, meshes: &[TriangleMesh], quality: Quality) -> Result<Tree> {
-        let tree = build(build::boxes(meshes), block::SIZE, quality);
+        let boxes = build::boxes(meshes);
         let meshes = Meshes::new(meshes);
+        let room = Room { primitives: block::SIZE, points: block::VERTICES };
+        let leaves = Triangles { room, corners: |triangle| meshes.vertices(triangle) };
+        let tree = build(boxes, &leaves, quality);
         let wide = collapse(&tree);
         let order = &tree.order;
-        let leaf = |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize]);
+        let leaf =
+            |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize], start);
         let root = self.add_tree(&tree.nodes, &wide, Some(&leaf))?;
-        Ok(Tree::new(root, bounds(&tree.nodes), &wide, meshes.into_numbers()))
+        Ok(Tree::new(root, bounds(&tree.nodes), &wide, tree.order, meshes.into_numbers()))
     }
 
     /// The tree over the instances.
@@ -205,13 +214,13 @@ impl Hierarchy {
                 boxes.push(PrimitiveBox::new(&bounds, id));
             }
         }
-        let tree = build(boxes, 1, quality);
+        let tree = build(boxes, &Anything(1), quality);
         let wide = collapse(&tree);
         let root = self.add_tree(&tree.nodes, &wide, None::<&fn(u32, u32) -> Block>)?;
         let children = wide.nodes.iter().flat_map(WideNode::children);
         let leaves = children.filter_map(|&child| leaf_range(&tree.nodes[child as usize]));
         self.order = leaves.map(|(start, _)| tree.order[start as usize]).collect();
-        self.instances = Tree::new(root, bounds(&tree.nodes), &wide, Numbers::new(&[]));
+        self.instances = Tree::new(root, bounds(&tree.nodes), &wide, Vec::new(), Numbers::new(&[]));
         Ok(())
     }
 
@@ -227,19 +236,16 @@ impl Hierarchy {
             return Ok(None);
         }
         // The root, then the children of each node, in the order of the nodes.
-        let root = self.used.next_multiple_of(NODE_UNITS);
-        let leaf_units = if leaf.is_some() { LEAF_UNITS } else { 0 };
+        let root = self.used;
         let mut places = Vec::with_capacity(wide.nodes.len());
-        let mut end = root + NODE_UNITS;
+        let mut end = root + 1;
         for node in &wide.nodes {
-            // Nodes begin on cache lines.
-            let place = end.next_multiple_of(if node.inner().is_empty() { 1 } else { NODE_UNITS });
-            places.push(place);
-            end = place + node.inner().len() * NODE_UNITS + usize::from(node.leaves()) * leaf_units;
+            places.push(end);
+            end += node.inner().len() + if leaf.is_some() { usize::from(node.leaves()) } else { 0 };
         }
         self.used = end;
         if end > Reference::NUMBERS.min(self.units.len()) {
-            return Err(backend_error("the hierarchy would be larger than 32 GiB"));
+            return Err(backend_error("the hierarchy would be larger than 128 GiB"));
         }
         let new_node = |i: usize| {
             let source = &wide.nodes[i];
@@ -251,12 +257,12 @@ impl Hierarchy {
             let instances = leaf.is_none().then_some(source.leaves_before as usize);
             Node::new(boxes, source.inner().len(), places[i], instances)
         };
-        let (of_root, mut rest) = self.units[root..end].split_at_mut(NODE_UNITS);
-        of_root.copy_from_slice(bytemuck::cast_slice(&[new_node(0)]));
+        let (of_root, mut rest) = self.units[root..end].split_at_mut(1);
+        of_root[0] = bytemuck::must_cast(new_node(0));
         // The children of many nodes at a time, and the units that they fill.
         const CHUNK: usize = 256;
         let mut chunks = Vec::with_capacity(wide.nodes.len() / CHUNK + 1);
-        let mut begin = root + NODE_UNITS;
+        let mut begin = root + 1;
         for first in (0..wide.nodes.len()).step_by(CHUNK) {
             let last = (first + CHUNK).min(wide.nodes.len());
             let end = places.get(last).copied().unwrap_or(end);
@@ -269,16 +275,14 @@ impl Hierarchy {
                 let source = &wide.nodes[i];
                 let mut place = places[i] - begin;
                 for child in source.inner() {
-                    units[place..place + NODE_UNITS]
-                        .copy_from_slice(bytemuck::cast_slice(&[new_node(child)]));
-                    place += NODE_UNITS;
+                    units[place] = bytemuck::must_cast(new_node(child));
+                    place += 1;
                 }
                 let Some(leaf) = leaf else { continue };
                 for &child in &source.children()[source.inner().len()..] {
                     let Some((start, end)) = leaf_range(&tree[child as usize]) else { continue };
-                    units[place..place + LEAF_UNITS]
-                        .copy_from_slice(bytemuck::cast_slice(&[leaf(start, end)]));
-                    place += LEAF_UNITS;
+                    units[place] = bytemuck::must_cast(leaf(start, end));
+                    place += 1;
                 }
             }
         });
@@ -319,7 +323,7 @@ mod tests {
                     pool.expect("threads").install(|| Hierarchy::build(&geometry, quality));
                 bytemuck::cast_slice::<_, u8>(&hierarchy.expect("it builds").units).to_vec()
             });
-            assert!(bytes[0].len() > 90_000 * 30);
+            assert!(bytes[0].len() > 90_000 * 15);
             assert!(bytes.iter().all(|other| *other == bytes[0]), "{quality:?}");
         }
     }

@@ -93,6 +93,12 @@ impl Bvh {
         steps.get()
     }
 
+    /// Place of a triangle in the order of its tree.
+    #[inline(always)]
+    fn place(&self, found: Found) -> usize {
+        self.hierarchy.block(found.leaf).first as usize + found.lane as usize
+    }
+
     /// The id of a triangle in a leaf; a miss of none.
     #[inline]
     fn id(&self, found: Found) -> PrimitiveId {
@@ -100,8 +106,7 @@ impl Bvh {
             return PrimitiveId::MISS;
         }
         let tree = self.hierarchy.tree_of(&self.geometry, found.instance);
-        let triangle = self.hierarchy.block(found.leaf).triangles[found.lane as usize];
-        tree.numbers.id(triangle, found.instance)
+        tree.numbers.id(tree.order[self.place(found)], found.instance)
     }
 }
 

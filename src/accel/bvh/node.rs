@@ -10,8 +10,8 @@ use bytemuck::{Pod, Zeroable};
 /// Children a node, at most.
 pub(super) const WIDTH: usize = 16;
 
-/// Bytes of which places in the arena are counted: no vector of a node or a leaf crosses a cache line.
-pub(super) const UNIT: usize = 32;
+/// Bytes of a node, and of a leaf.
+pub(super) const UNIT: usize = 128;
 
 /// What is next: a node, a leaf, an instance, or an event of the traversal. Two bits of kind, then a number: for
 /// nodes and leaves the place in the arena, in units.
@@ -47,7 +47,7 @@ impl Reference {
     }
 }
 
-/// What a reference refers to. Instances are numbered in steps of [`LEAF_UNITS`], like leaves.
+/// What a reference refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Node,
@@ -75,12 +75,7 @@ pub(super) struct Node {
     unused: u32,
 }
 
-const _: () = assert!(size_of::<Node>() == NODE_UNITS * UNIT);
-
-/// Units from one node to the next.
-pub(super) const NODE_UNITS: usize = 4;
-/// Units from one leaf to the next.
-pub(super) const LEAF_UNITS: usize = 10;
+const _: () = assert!(size_of::<Node>() == UNIT);
 
 impl Node {
     /// A node of one to sixteen children with these boxes, of which the first `inner` are nodes. They lie in the arena
@@ -92,10 +87,10 @@ impl Node {
         instances: Option<usize>,
     ) -> Self {
         let (kind, number) = match instances {
-            None => (Kind::Leaf, place + inner * NODE_UNITS),
-            Some(first) => (Kind::Instance, first * LEAF_UNITS),
+            None => (Kind::Leaf, place + inner),
+            Some(first) => (Kind::Instance, first),
         };
-        let first_leaf = Reference::new(kind, number).0.wrapping_sub((inner * LEAF_UNITS) as u32);
+        let first_leaf = Reference::new(kind, number).0.wrapping_sub(inner as u32);
         let all = children.iter().fold(Aabb::EMPTY, |all, b| all.union(*b));
         let [x, y, z] = [0, 1, 2].map(|axis| exponent(all.min[axis], all.max[axis]));
         let last = f32::from_le_bytes([x, y, z, children.len() as u8]);
@@ -134,8 +129,8 @@ impl Node {
     #[inline(always)]
     pub(super) fn child(&self, i: usize) -> Reference {
         Reference(match self.inner >> i & 1 {
-            0 => self.first_leaf.wrapping_add((i * LEAF_UNITS) as u32),
-            _ => self.first_inner + (i * NODE_UNITS) as u32,
+            0 => self.first_leaf.wrapping_add(i as u32),
+            _ => self.first_inner + i as u32,
         })
     }
 }
@@ -195,11 +190,8 @@ mod tests {
                     );
                     assert!(plane(WIDTH) >= upper && upper > plane(WIDTH) - 1.001 * step);
                 }
-                let (kind, place) = if i < n / 2 {
-                    (Kind::Node, 100 + i * NODE_UNITS)
-                } else {
-                    (Kind::Leaf, 100 + n / 2 * NODE_UNITS + (i - n / 2) * LEAF_UNITS)
-                };
+                let (kind, place) =
+                    if i < n / 2 { (Kind::Node, 100 + i) } else { (Kind::Leaf, 100 + i) };
                 assert_eq!(node.child(i), Reference::new(kind, place));
             }
         }

@@ -12,6 +12,7 @@ use crate::geometry::{Geometry, NONE, Ray};
 use crate::math::{Vec3, Vec4};
 use crate::os::Arena;
 use bytemuck::Zeroable;
+use std::hint::select_unpredictable;
 
 /// References that a stack has room for, with what vectors are written beyond its top: both levels as deep as
 /// the builder's limit on depth lets them be, with all but one child of every node left for later.
@@ -63,6 +64,17 @@ pub(super) struct Found {
 impl Found {
     /// Nothing so far.
     pub(super) const NONE: Self = Self { leaf: Reference::NOTHING, lane: 0, instance: NONE };
+
+    /// This one if `condition`, otherwise the other. Without a branch.
+    #[inline(always)]
+    pub(super) fn or(self, other: Self, condition: bool) -> Self {
+        let select = |this, other| select_unpredictable(condition, this, other);
+        Self {
+            leaf: Reference(select(self.leaf.0, other.leaf.0)),
+            lane: select(self.lane, other.lane),
+            instance: select(self.instance, other.instance),
+        }
+    }
 
     /// Whether it is a triangle.
     #[inline(always)]

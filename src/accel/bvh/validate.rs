@@ -14,7 +14,7 @@ use crate::math::{DVec3, Vec3};
 pub struct TreeStatistics {
     /// Nodes of up to sixteen children.
     pub nodes: usize,
-    /// Leaves of up to four triangles.
+    /// Leaves of up to eight triangles.
     pub leaves: usize,
     /// Triangles in leaves.
     pub triangles: usize,
@@ -129,18 +129,18 @@ impl<'a> Walk<'a> {
         let block = block.ok_or_else(|| backend_error("a leaf is out of bounds"))?;
         let mut count = 0;
         for lane in 0..block::SIZE {
-            let triangle = block.triangles[lane];
-            if triangle & block::ABSENT != 0 {
+            if !block.has(lane) {
                 continue;
             }
+            let triangle = self.tree.order.get(block.first as usize + count).copied();
+            let triangle = triangle.ok_or_else(|| backend_error("a triangle is out of bounds"))?;
             count += 1;
             let id = self.tree.numbers.id(triangle, 0);
             let seen = self.seen[id.geometry as usize].get_mut(id.primitive as usize);
             *seen.ok_or_else(|| backend_error("a triangle is out of bounds"))? += 1;
             let corners = meshes[id.geometry as usize].vertices(id.primitive);
-            for (vertex, corner) in corners.iter().enumerate() {
-                let stored = [0, 1, 2].map(|axis| block.corners[vertex][axis][lane]);
-                ensure(stored == corner.to_array(), "a leaf has another triangle's corners")?;
+            ensure(block.vertices(lane) == corners, "a leaf has another triangle's corners")?;
+            for corner in corners {
                 let is_inside = corner.cmpge(bounds.min).all() && corner.cmple(bounds.max).all();
                 ensure(is_inside, "a triangle is outside of its leaf's box")?;
             }

@@ -11,6 +11,8 @@ use super::slot::{Found, Slot};
 use crate::accel::{HitFilter, resolve};
 use crate::geometry::{NONE, Ray, triangle_distance, within_box};
 use crate::math::Vec3;
+use crate::os::prefetch;
+use std::hint::select_unpredictable;
 
 /// A batch of queries. `ANY`: the first hit is enough.
 pub(super) struct Batch<'a, F, A, const ANY: bool> {
@@ -53,9 +55,14 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
             let is_simple = nearer & nearer.wrapping_sub(1) == 0 && distance != slot.limit;
             if is_simple && !(F::REFUSES && bvh.has_filters) {
                 let found = Found { leaf: slot.next, lane, instance: NONE };
+                // Whether it is nearer than the best is as likely as not: without a branch.
                 let is_better = nearer != 0;
-                slot.limit = if is_better { distance } else { slot.limit };
-                slot.best = if is_better { found } else { slot.best };
+                slot.limit = select_unpredictable(is_better, distance, slot.limit);
+                slot.best = found.or(slot.best, is_better);
+                if !ANY {
+                    // Its number will be asked for when the ray is done.
+                    prefetch(bvh.hierarchy.own.order.as_ptr().wrapping_add(bvh.place(found)));
+                }
                 is_better
             } else {
                 self.consider(slot, nearer, &t)
@@ -65,8 +72,7 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
         };
         match (ANY, is_better) {
             // Down to the reference that ends it.
-            (true, true) => 1,
-            (true, false) => top,
+            (true, _) => select_unpredictable(is_better, 1, top),
             (false, _) => kernel.prune(slot),
         }
     }

@@ -13,7 +13,7 @@
 //! rounding. The rest, edges nearer than 16u D of the sum over all corners, is asked again with exact products;
 //! and so is what leaves the range of `f32`.
 
-use super::block::{Block, SIZE};
+use super::block::Block;
 use crate::math::UNIT_ROUNDOFF;
 use bytemuck::{Pod, Zeroable};
 
@@ -56,24 +56,18 @@ impl Shear {
         }
     }
 
-    /// The corners of the block along axis `i` of the shear.
+    /// A vertex relative to the origin, sheared.
     #[inline(always)]
-    pub(super) fn along<'a>(&self, corner: &'a [[f32; SIZE]; 3], i: usize) -> &'a [f32; SIZE] {
-        &corner[self.axes[i].min(2) as usize]
+    pub(super) fn project(&self, block: &Block, vertex: usize) -> [f32; 2] {
+        let along = |i: usize| block.along(self.axes[i] as usize, vertex) - self.origin[i];
+        let depth = along(2);
+        [0, 1].map(|i| along(i) - self.shear[i] * depth)
     }
 
     /// Whether the ray's line meets the triangle in that lane, with exact products.
     #[cold]
     pub(super) fn is_inside(&self, block: &Block, lane: usize) -> bool {
-        let [a, b, c] = &block.corners;
-        let project = |corner: &[[f32; SIZE]; 3]| {
-            let depth = self.along(corner, 2)[lane] - self.origin[2];
-            let flat = |i: usize| {
-                f64::from((self.along(corner, i)[lane] - self.origin[i]) - self.shear[i] * depth)
-            };
-            [flat(0), flat(1)]
-        };
-        let (a, b, c) = (project(a), project(b), project(c));
+        let [a, b, c] = block.numbers(lane).map(|v| self.project(block, v).map(f64::from));
         // Products of two `f32` are exact in `f64`, so only the last subtraction rounds.
         let edge = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
         let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));

@@ -8,6 +8,7 @@
 mod bins;
 mod grid;
 mod node;
+mod points;
 mod primitive;
 mod range;
 mod reinsert;
@@ -17,6 +18,7 @@ mod triangles;
 mod tests;
 
 pub(super) use node::{BinaryNode, BinaryTree, Kind, half_area};
+pub(super) use points::{Anything, Leaves, Room, Triangles};
 pub(super) use primitive::PrimitiveBox;
 pub(super) use triangles::boxes;
 
@@ -26,7 +28,7 @@ use primitive::{Bounds, Centers};
 use range::Range;
 use rayon::prelude::*;
 use reinsert::Reinsertion;
-use sweep::Sweep;
+use sweep::{MOST, Sweep};
 
 /// How much a hierarchy may cost to build, against what it saves later.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -43,7 +45,7 @@ pub enum Quality {
 /// What a quality means, and what is asked of leaves.
 #[derive(Clone, Copy, Debug)]
 struct Settings {
-    /// A leaf has at most 2^this primitives.
+    /// What splitting counts on: a leaf of 2^this primitives.
     leaf_shift: u32,
     /// Ranges of fewer primitives have 8 bins along an axis, or 16; all others have 32.
     more_bins_from: [usize; 2],
@@ -107,18 +109,17 @@ const LARGE: usize = 1 << 16;
 /// Primitives that one thread measures at a time.
 const CHUNK: usize = 8192;
 
-/// Builds over `boxes` with leaves of at most `leaf_size` primitives, a power of two up to 8. There are fewer than
-/// 2^30 primitives. The tree is no deeper than [`HALVE_FROM`] + 30.
+/// Builds over `boxes` with leaves that have room for what is in them. There are fewer than 2^30 primitives. The tree is no deeper than [`HALVE_FROM`] + 30.
 pub(super) fn build(
     mut boxes: Vec<PrimitiveBox>,
-    leaf_size: usize,
+    leaves: &impl Leaves,
     quality: Quality,
 ) -> BinaryTree {
     let n = boxes.len();
     if n == 0 {
         return BinaryTree::default();
     }
-    let settings = Settings::new(quality, leaf_size);
+    let settings = Settings::new(quality, leaves.room().primitives);
     let measure = |chunk: &[PrimitiveBox]| (Bounds::of(chunk), Centers::of(chunk));
     let measures: Vec<_> = boxes.par_chunks(CHUNK).map(measure).collect();
     let (bounds, centers) =
@@ -133,7 +134,7 @@ pub(super) fn build(
     let range =
         Range { here, there, order: &mut order, first: 0, node: 0, depth: 0, bounds, centers };
     let tasks = split_large(range, &mut top, &settings);
-    let subtree = |range: Range<'_>| (range.node, subtree(range, &settings));
+    let subtree = |range: Range<'_>| (range.node, subtree(range, &settings, leaves));
     let subtrees: Vec<_> = tasks.into_par_iter().with_max_len(1).map(subtree).collect();
     // Nobody needs them any more; the nodes are about to be there twice.
     drop((boxes, room));
@@ -165,13 +166,13 @@ fn split_large<'a>(range: Range<'a>, top: &mut Nodes, settings: &Settings) -> Ve
 }
 
 /// The subtree over a range, by one thread.
-fn subtree(range: Range<'_>, settings: &Settings) -> Nodes {
+fn subtree(range: Range<'_>, settings: &Settings, leaves: &impl Leaves) -> Nodes {
     let mut nodes = Nodes::new(&range.bounds, range.here.len());
-    let (mut bins, mut sweep) = (Bins::new(), Sweep::new(settings));
+    let (mut bins, mut sweep) = (Bins::new(), Sweep::new(leaves));
     // What is still to be split, depth first.
     let mut stack = vec![Range { node: 0, ..range }];
     while let Some(range) = stack.pop() {
-        if range.here.len() <= sweep::MOST {
+        if range.here.len() <= MOST {
             sweep.build(range, &mut nodes);
             continue;
         }

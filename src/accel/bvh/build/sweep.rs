@@ -1,32 +1,42 @@
 //! Subtrees over few primitives: sorted along each axis, and cut wherever it is cheapest.
 //!
 //! Source of the sweep: J. D. MacDonald, K. S. Booth, "Heuristics for ray tracing using space subdivision", The
-//! Visual Computer 6(3), 1990. A leaf costs the same with one primitive as with all that it has room for: that makes leaves
-//! come out full.
+//! Visual Computer 6(3), 1990. A leaf costs the same with one primitive as with all that it has room for, in primitives and
+//! in their points: that makes leaves come out full.
 
+use super::HALVE_FROM;
 use super::bins::{Grid, cheapest_axis};
 use super::node::Nodes;
+use super::points::{Leaves, Room};
 use super::primitive::{Bounds, Centers, PrimitiveBox};
 use super::range::Range;
-use super::{HALVE_FROM, Settings};
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 /// Most primitives.
 pub(super) const MOST: usize = 16;
 /// Keeps an index below [`MOST`], for the compiler to see.
 const MASK: usize = MOST - 1;
 
+/// More points than any primitives here have.
+const POINTS: usize = 64;
+
 /// Room to work in, used again and again.
-pub(super) struct Sweep {
+pub(super) struct Sweep<'a, L> {
+    leaves: &'a L,
+    room: Room,
     bounds: [Bounds; MOST],
     ids: [u32; MOST],
+    /// The points of each primitive.
+    points: [u64; MOST],
     /// The primitives in the order of their centres along each axis; a part has the same places in each.
     sorted: [[u8; MOST]; 3],
     /// Boxes in the order along each axis.
     in_order: [[Bounds; 3]; MOST],
-    /// Leaves that so many primitives fill.
-    leaves: [f32; MOST],
-    leaf_size: usize,
+    /// Points in the order along each axis.
+    points_in_order: [[u64; 3]; MOST],
+    /// Leaves that so many primitives fill, and so many points.
+    by_count: [f32; MOST],
+    by_points: [f32; POINTS + 1],
 }
 
 /// Places of primitives that are to become a subtree.
@@ -47,22 +57,27 @@ struct Cut {
     left: usize,
 }
 
-impl Sweep {
-    pub(super) fn new(settings: &Settings) -> Self {
-        let leaf_size = 1 << settings.leaf_shift;
+impl<'a, L: Leaves> Sweep<'a, L> {
+    pub(super) fn new(leaves: &'a L) -> Self {
+        let room = leaves.room();
         Self {
+            leaves,
+            room,
             bounds: [Bounds::EMPTY; MOST],
             ids: [0; MOST],
+            points: [0; MOST],
             sorted: [[0; MOST]; 3],
             in_order: [[Bounds::EMPTY; 3]; MOST],
-            leaves: std::array::from_fn(|n| n.div_ceil(leaf_size) as f32),
-            leaf_size,
+            points_in_order: [[0; 3]; MOST],
+            by_count: std::array::from_fn(|n| n.div_ceil(room.primitives) as f32),
+            by_points: std::array::from_fn(|n| n.div_ceil(room.points) as f32),
         }
     }
 
     /// Builds the subtree over at most [`MOST`] primitives.
     pub(super) fn build(&mut self, range: Range<'_>, nodes: &mut Nodes) {
         self.sort(range.here, &range.centers);
+        self.points = self.leaves.points(&self.ids[..range.here.len()]);
         let Range { node, depth, .. } = range;
         let mut stack = [Part::default(); MOST];
         stack[0] = Part { start: 0, end: range.here.len(), node, depth, axis: 0 };
@@ -71,7 +86,7 @@ impl Sweep {
             len -= 1;
             let part = stack[len & MASK];
             let Part { start, end, node, depth, .. } = part;
-            if end - start <= self.leaf_size {
+            if self.fits(&self.sorted[part.axis][start..end]) {
                 for (place, i) in range.order[start..end].iter_mut().zip(start..) {
                     *place = self.ids[self.sorted[part.axis][i & MASK] as usize & MASK];
                 }
@@ -81,8 +96,8 @@ impl Sweep {
             self.put_in_order(&part);
             let Cut { axis, left: count } = self.best_cut(&part);
             let middle = start + count;
-            // Otherwise both sides are leaves.
-            if count.max(end - middle) > self.leaf_size {
+            let sides = [start..middle, middle..end].map(|side| &self.sorted[axis][side]);
+            if !sides.into_iter().all(|side| self.fits(side)) {
                 self.distribute(&part, axis, middle);
             }
             let union = |a: Bounds, j: usize| a.union(self.in_order[j & MASK][axis]);
@@ -94,6 +109,13 @@ impl Sweep {
             stack[(len + 1) & MASK] = Part { start, end: middle, node: child, depth, axis };
             len += 2;
         }
+    }
+
+    /// Whether these primitives fit into a leaf.
+    #[inline(always)]
+    fn fits(&self, primitives: &[u8]) -> bool {
+        let points = primitives.iter().fold(0, |all, &p| all | self.points[p as usize & MASK]);
+        primitives.len() <= self.room.primitives && points.count_ones() as usize <= self.room.points
     }
 
     /// Takes the primitives over, and sorts them along each axis.
@@ -128,12 +150,15 @@ impl Sweep {
         }
     }
 
-    /// Puts the boxes of a part in order.
+    /// Puts the boxes and the points of a part in order.
     #[inline(always)]
     fn put_in_order(&mut self, part: &Part) {
         for (axis, sorted) in self.sorted.iter().enumerate() {
-            for (boxes, i) in self.in_order.iter_mut().zip(part.start..part.end) {
-                boxes[axis] = self.bounds[sorted[i & MASK] as usize & MASK];
+            let places = self.in_order.iter_mut().zip(&mut self.points_in_order);
+            for ((boxes, points), i) in places.zip(part.start..part.end) {
+                let primitive = sorted[i & MASK] as usize & MASK;
+                boxes[axis] = self.bounds[primitive];
+                points[axis] = self.points[primitive];
             }
         }
     }
@@ -142,22 +167,29 @@ impl Sweep {
     #[inline(always)]
     fn best_cut(&self, part: &Part) -> Cut {
         let n = (part.end - part.start).min(MOST);
-        let leaves = |count: usize| self.leaves[count & MASK];
+        let by_points = |points: u64| self.by_points[points.count_ones() as usize];
+        let leaves = |count: usize, points: [u64; 3]| {
+            let by_points = Vec3::from(points.map(by_points)).extend(0.0);
+            by_points.max(Vec4::splat(self.by_count[count & MASK]))
+        };
         // From the right: what each cut leaves there. All axes at once, one in each lane.
         let mut right = [Vec4::ZERO; MOST];
-        let mut union = self.in_order[(n - 1) & MASK];
+        let (mut union, mut points) =
+            (self.in_order[(n - 1) & MASK], self.points_in_order[(n - 1) & MASK]);
         for left in (1..n).rev() {
-            right[left] = Bounds::half_areas(&union) * leaves(n - left);
+            right[left] = Bounds::half_areas(&union) * leaves(n - left, points);
             add(&mut union, &self.in_order[left - 1]);
+            add_points(&mut points, &self.points_in_order[left - 1]);
         }
-        let mut union = self.in_order[0];
+        let (mut union, mut points) = (self.in_order[0], self.points_in_order[0]);
         let (mut least, mut best) = (Vec4::INFINITY, Vec4::ZERO);
         for (left, right) in right.iter().enumerate().take(n).skip(1) {
-            let cost = Bounds::half_areas(&union) * leaves(left) + right;
+            let cost = Bounds::half_areas(&union) * leaves(left, points) + right;
             let is_less = cost.cmplt(least);
             least = Vec4::select(is_less, cost, least);
             best = Vec4::select(is_less, Vec4::splat(left as f32), best);
             add(&mut union, &self.in_order[left]);
+            add_points(&mut points, &self.points_in_order[left]);
         }
         let axis = cheapest_axis(least);
         let left = best[axis] as usize & MASK;
@@ -192,5 +224,13 @@ impl Sweep {
 fn add(boxes: &mut [Bounds; 3], others: &[Bounds; 3]) {
     for (a, b) in boxes.iter_mut().zip(others) {
         *a = a.union(*b);
+    }
+}
+
+/// Makes sets of points larger, so that they hold others.
+#[inline(always)]
+fn add_points(sets: &mut [u64; 3], others: &[u64; 3]) {
+    for (a, b) in sets.iter_mut().zip(others) {
+        *a |= b;
     }
 }

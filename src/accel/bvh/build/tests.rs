@@ -1,7 +1,7 @@
 //! The builder on what is out to break it, held to the work that it may do and the tree that it must make.
 
 use super::reinsert::MOST_DEPTH;
-use super::{BinaryTree, Kind, PrimitiveBox, Quality, build, half_area};
+use super::{Anything, BinaryTree, Kind, PrimitiveBox, Quality, build, half_area};
 use crate::geometry::Aabb;
 use crate::math::Vec3;
 use crate::sampling::CounterRng;
@@ -96,7 +96,7 @@ fn no_input_takes_quadratic_work() {
     ];
     for (name, most, boxes) in &cases {
         for quality in QUALITIES {
-            let levels = levels(&build(primitives(boxes), 4, quality), boxes, 4);
+            let levels = levels(&build(primitives(boxes), &Anything(4), quality), boxes, 4);
             assert!(levels <= *most, "{name}, {quality:?}: {levels}");
         }
     }
@@ -109,7 +109,7 @@ fn few_primitives_of_any_number_make_a_tree() {
         let mut point = || Vec3::new(rng.unit(), rng.unit(), rng.unit());
         let boxes: Vec<_> = (0..n).map(|_| around(point(), 0.1)).collect();
         for (quality, leaf_size) in QUALITIES.into_iter().flat_map(|q| [(q, 1), (q, 4), (q, 8)]) {
-            let tree = build(primitives(&boxes), leaf_size, quality);
+            let tree = build(primitives(&boxes), &Anything(leaf_size), quality);
             if n > 0 {
                 levels(&tree, &boxes, leaf_size as u32);
             }
@@ -128,6 +128,7 @@ fn more_work_makes_a_cheaper_tree() {
     let boxes: Vec<_> = (0..N)
         .map(|i| small(point(), centers[i % 50], if i % 3 == 0 { 0.5 } else { 0.05 }))
         .collect();
-    let [fast, default, high] = QUALITIES.map(|q| cost(&build(primitives(&boxes), 4, q)));
+    let [fast, default, high] =
+        QUALITIES.map(|q| cost(&build(primitives(&boxes), &Anything(4), q)));
     assert!(default < fast * 0.999 && high < default * 0.99, "{fast} {default} {high}");
 }

@@ -1,8 +1,8 @@
 //! Sixteen children as twice eight in AVX2, which has no compression: a table of permutations serves.
 
-use super::{Distances, Inside, Kernel, Task, avx, plain};
+use super::{Distances, Inside, Kernel, Task, avx2_leaf, plain};
 use crate::accel::bvh::block::Block;
-use crate::accel::bvh::node::{LEAF_UNITS, NODE_UNITS, Node, WIDTH};
+use crate::accel::bvh::node::{Node, WIDTH};
 use crate::accel::bvh::slot::{SPARE, Slot};
 use crate::accel::bvh::woop::Shear;
 #[allow(clippy::wildcard_imports, reason = "the names say where they are from")]
@@ -48,13 +48,13 @@ impl Kernel for Avx2 {
     #[inline(always)]
     fn inside(self, shear: &Shear, block: &Block) -> Inside {
         // SAFETY: as above.
-        unsafe { avx::inside(shear, block) }
+        unsafe { avx2_leaf::inside(shear, block) }
     }
 
     #[inline(always)]
     fn distances(self, slot: &Slot, block: &Block) -> Distances {
         // SAFETY: as above.
-        unsafe { avx::distances(slot, block) }
+        unsafe { avx2_leaf::distances(slot, block) }
     }
 }
 
@@ -143,15 +143,11 @@ fn open<const ORDERED: bool>(slot: &mut Slot, node: &Node) -> usize {
 #[target_feature(enable = "avx2")]
 #[inline]
 fn children(node: &Node, lanes: __m256i) -> __m256i {
-    let at = |first: u32, units: usize| {
-        let offsets = _mm256_mullo_epi32(lanes, _mm256_set1_epi32(units as i32));
-        _mm256_add_epi32(_mm256_set1_epi32(first as i32), offsets)
-    };
+    let at = |first: u32| _mm256_add_epi32(_mm256_set1_epi32(first as i32), lanes);
     // Inner ones come first.
     let inner = _mm256_set1_epi32(node.inner.count_ones() as i32);
     let is_inner = _mm256_cmpgt_epi32(inner, lanes);
-    let (nodes, leaves) = (at(node.first_inner, NODE_UNITS), at(node.first_leaf, LEAF_UNITS));
-    _mm256_blendv_epi8(leaves, nodes, is_inner)
+    _mm256_blendv_epi8(at(node.first_leaf), at(node.first_inner), is_inner)
 }
 
 /// Largest first.

@@ -3,9 +3,9 @@
 //! Source of the networks: K. Batcher, "Sorting Networks and their Applications", AFIPS 1968, with each merge's first
 //! step against the reversed other half.
 
-use super::{Distances, Inside, Kernel, Task, avx};
-use crate::accel::bvh::block::{Block, SIZE};
-use crate::accel::bvh::node::{LEAF_UNITS, NODE_UNITS, Node, WIDTH};
+use super::{Distances, Inside, Kernel, Task, avx512_leaf};
+use crate::accel::bvh::block::Block;
+use crate::accel::bvh::node::{Node, WIDTH};
 use crate::accel::bvh::slot::Slot;
 use crate::accel::bvh::woop::Shear;
 use bytemuck::Pod;
@@ -54,13 +54,13 @@ impl Kernel for Avx512 {
     #[inline(always)]
     fn inside(self, shear: &Shear, block: &Block) -> Inside {
         // SAFETY: as above.
-        unsafe { avx::inside(shear, block) }
+        unsafe { avx512_leaf::inside(shear, block) }
     }
 
     #[inline(always)]
     fn distances(self, slot: &Slot, block: &Block) -> Distances {
         // SAFETY: as above.
-        unsafe { distances(slot, block) }
+        unsafe { avx512_leaf::distances(slot, block) }
     }
 }
 
@@ -105,15 +105,9 @@ fn open<const ORDERED: bool>(slot: &mut Slot, node: &Node) -> usize {
     let count = met.count_ones() as usize;
     let top = slot.top as usize;
     let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-    let inner = _mm512_add_epi32(
-        _mm512_set1_epi32(node.first_inner as i32),
-        _mm512_mullo_epi32(lanes, _mm512_set1_epi32(NODE_UNITS as i32)),
-    );
-    let leaves = _mm512_add_epi32(
-        _mm512_set1_epi32(node.first_leaf as i32),
-        _mm512_mullo_epi32(lanes, _mm512_set1_epi32(LEAF_UNITS as i32)),
-    );
-    let children = _mm512_mask_blend_epi32(node.inner, leaves, inner);
+    let leaves = _mm512_add_epi32(lanes, _mm512_set1_epi32(node.first_leaf as i32));
+    let first_inner = _mm512_set1_epi32(node.first_inner as i32);
+    let children = _mm512_mask_add_epi32(leaves, node.inner, lanes, first_inner);
     if !ORDERED {
         store16(&mut slot.references, top, _mm512_maskz_compress_epi32(met, children));
         return top + count;
@@ -137,47 +131,6 @@ fn open<const ORDERED: bool>(slot: &mut Slot, node: &Node) -> usize {
         store16(&mut slot.entries, top, distances);
     }
     top + count
-}
-
-/// See [`Kernel::distances`]: the operations of `plain`, in its order and without fused ones, so the same bits.
-#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,popcnt")]
-#[inline]
-fn distances(slot: &Slot, block: &Block) -> Distances {
-    let all = |value: f32| _mm512_cvtps_pd(_mm256_set1_ps(value));
-    let corner = |vertex: usize, axis: usize| to_f64(&block.corners[vertex][axis]);
-    let sub = |a, b| _mm512_sub_pd(a, b);
-    let mul = |a, b| _mm512_mul_pd(a, b);
-    let add = |a, b| _mm512_add_pd(a, b);
-    let a = [corner(0, 0), corner(0, 1), corner(0, 2)];
-    let ab = [sub(corner(1, 0), a[0]), sub(corner(1, 1), a[1]), sub(corner(1, 2), a[2])];
-    let ac = [sub(corner(2, 0), a[0]), sub(corner(2, 1), a[1]), sub(corner(2, 2), a[2])];
-    let normal = [
-        sub(mul(ab[1], ac[2]), mul(ac[1], ab[2])),
-        sub(mul(ab[2], ac[0]), mul(ac[2], ab[0])),
-        sub(mul(ab[0], ac[1]), mul(ac[0], ab[1])),
-    ];
-    let dot = |x: __m512d, y: __m512d, z: __m512d| {
-        add(add(mul(x, normal[0]), mul(y, normal[1])), mul(z, normal[2]))
-    };
-    let [dx, dy, dz, _] = slot.direction;
-    let minus_det = dot(all(dx), all(dy), all(dz));
-    let [ox, oy, oz, _] = slot.origin;
-    let height = dot(sub(all(ox), a[0]), sub(all(oy), a[1]), sub(all(oz), a[2]));
-    // 1 / -x is -(1 / x), to the bit.
-    let t = _mm512_cvtpd_ps(mul(height, _mm512_div_pd(_mm512_set1_pd(-1.0), minus_det)));
-    let beyond = _mm256_cmp_ps_mask::<_CMP_GT_OQ>(t, _mm256_set1_ps(slot.t_min));
-    let within = _mm256_mask_cmp_ps_mask::<_CMP_LE_OQ>(beyond, t, _mm256_set1_ps(slot.limit));
-    let mut distances = Distances { t: [0.0; SIZE], within: within.into() };
-    // SAFETY: writes eight values where there are eight.
-    unsafe { _mm256_storeu_ps(distances.t.as_mut_ptr(), t) };
-    distances
-}
-
-#[target_feature(enable = "avx512f")]
-#[inline]
-fn to_f64(values: &[f32; SIZE]) -> __m512d {
-    // SAFETY: reads the eight values.
-    _mm512_cvtps_pd(unsafe { _mm256_loadu_ps(values.as_ptr()) })
 }
 
 /// A node's grid in a ray's parameter: a plane is at base + number * step. The fourth elements mean nothing.

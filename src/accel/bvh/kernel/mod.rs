@@ -5,11 +5,13 @@
 //! within the margins of `ray`, which hit is found does not.
 
 #[cfg(target_arch = "x86_64")]
-mod avx;
-#[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
+mod avx2_leaf;
+#[cfg(target_arch = "x86_64")]
 mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod avx512_leaf;
 mod counting;
 mod plain;
 #[cfg(test)]

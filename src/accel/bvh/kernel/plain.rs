@@ -1,7 +1,7 @@
 //! Loops over arrays, which the compiler turns into whatever vectors the machine has.
 
 use super::{Distances, Inside, Kernel};
-use crate::accel::bvh::block::{ABSENT, Block, SIZE};
+use crate::accel::bvh::block::{Block, SIZE, VERTICES};
 use crate::accel::bvh::node::{Node, WIDTH};
 use crate::accel::bvh::slot::{SPARE, Slot};
 use crate::accel::bvh::woop::{LARGEST, SMALLEST, Shear};
@@ -87,34 +87,27 @@ fn meet(slot: &Slot, node: &Node) -> ([f32; WIDTH], u32) {
 /// See [`Kernel::inside`].
 #[inline(always)]
 pub(super) fn inside(shear: &Shear, block: &Block) -> Inside {
-    let mut flat = [[[0.0; SIZE]; 2]; 3];
-    for (flat, corner) in flat.iter_mut().zip(&block.corners) {
-        let depths = shear.along(corner, 2);
-        for (k, flat) in flat.iter_mut().enumerate() {
-            let places = shear.along(corner, k);
-            for i in 0..SIZE {
-                let depth = depths[i] - shear.origin[2];
-                flat[i] = (places[i] - shear.origin[k]) - shear.shear[k] * depth;
-            }
-        }
-    }
-    let [a, b, c] = &flat;
+    // Vertices relative to the origin, sheared, and the sums of their sizes.
+    let flat: [[f32; 2]; VERTICES] = std::array::from_fn(|vertex| shear.project(block, vertex));
+    let size = |i: usize| flat[i][0].abs() + flat[i][1].abs();
+    let edge = |p: usize, q: usize| flat[p][0] * flat[q][1] - flat[p][1] * flat[q][0];
+    // As vectors do it: the second where one is not a number.
+    let least = |a: f32, b: f32| if a < b { a } else { b };
+    let most = |a: f32, b: f32| if a > b { a } else { b };
     let (mut inside, mut sure) = (0, 0);
-    for i in 0..SIZE {
-        let u = c[0][i] * b[1][i] - c[1][i] * b[0][i];
-        let v = a[0][i] * c[1][i] - a[1][i] * c[0][i];
-        let w = b[0][i] * a[1][i] - b[1][i] * a[0][i];
+    for lane in 0..SIZE {
+        let [a, b, c] = block.numbers(lane);
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+        let (lowest, highest) = (least(least(u, v), w), most(most(u, v), w));
         // What is not a number has no sign, and is not trusted either.
-        let is_front = !((u < 0.0) | (v < 0.0) | (w < 0.0));
-        let is_back = !((u > 0.0) | (v > 0.0) | (w > 0.0));
-        let corners: f32 = flat.iter().map(|[x, y]| x[i].abs() + y[i].abs()).sum();
+        let (is_below, is_above) = (lowest < 0.0, highest > 0.0);
+        let is_one_sided = !is_below | !is_above;
         // Certain are edges larger than their error, and none that may have left the range of `f32`.
-        let error = (corners * shear.error).max(SMALLEST);
-        let is_certain = (u.abs() > error) & (v.abs() > error) & (w.abs() > error);
-        let sum = u.abs() + v.abs() + w.abs();
-        let is_present = block.triangles[i] & ABSENT == 0;
-        inside |= u32::from((is_front | is_back) & is_present) << i;
-        sure |= u32::from(is_certain & (sum < LARGEST)) << i;
+        let error = most((size(a) + size(b) + size(c)) * shear.error, SMALLEST);
+        let is_certain = (lowest > error) | (highest < -error);
+        let is_small = (u + v + w).abs() < LARGEST;
+        inside |= u32::from(is_one_sided & block.has(lane)) << lane;
+        sure |= u32::from(is_certain & is_small) << lane;
     }
     Inside { inside, unsure: inside & !sure }
 }
@@ -126,10 +119,9 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
     let mut t = [0.0; SIZE];
     let mut within = 0;
     for (i, t) in t.iter_mut().enumerate() {
-        let corner = |vertex: usize, axis: usize| f64::from(block.corners[vertex][axis][i]);
-        let a = [corner(0, 0), corner(0, 1), corner(0, 2)];
-        let ab = [corner(1, 0) - a[0], corner(1, 1) - a[1], corner(1, 2) - a[2]];
-        let ac = [corner(2, 0) - a[0], corner(2, 1) - a[1], corner(2, 2) - a[2]];
+        let [a, b, c] = block.vertices(i).map(|p| p.as_dvec3().to_array());
+        let ab = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+        let ac = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
         let normal = [
             ab[1] * ac[2] - ac[1] * ab[2],
             ab[2] * ac[0] - ac[2] * ab[0],

@@ -3,7 +3,7 @@
 #[cfg(target_arch = "x86_64")]
 use super::{Avx2, Avx512};
 use super::{Kernel, Plain};
-use crate::accel::bvh::block::{Block, Meshes, SIZE};
+use crate::accel::bvh::block::{Block, Meshes, SIZE, VERTICES};
 use crate::accel::bvh::node::{Node, WIDTH};
 use crate::accel::bvh::slot::Slot;
 use crate::geometry::{Aabb, Ray, TriangleMesh, intersect_triangle};
@@ -140,7 +140,7 @@ fn block(corners: &[[Vec3; 3]]) -> Block {
     let triangles: Vec<u32> = (0..corners.len() as u32).collect();
     let indices = triangles.iter().map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let meshes = [TriangleMesh::new(positions, indices, false)];
-    Block::new(&Meshes::new(&meshes), &triangles)
+    Block::new(&Meshes::new(&meshes), &triangles, 0)
 }
 
 /// The same triangles as in the other kernels, at the distances of the routine that makes the hit.
@@ -157,7 +157,14 @@ impl Check for Triangles {
         for round in 0..4000 {
             let scale = 10.0_f32.powi(round % 61 - 30);
             let n = 1 + round as usize % SIZE;
-            let corners: Vec<_> = (0..n).map(|_| [(); 3].map(|()| rng.point() * scale)).collect();
+            // Each between three of nine points, so that every vertex has its turn in every corner.
+            let points = [(); VERTICES].map(|()| rng.point() * scale);
+            let mut below = |n: usize| (rng.0.unit() * n as f32) as usize;
+            let mut three = || {
+                let (first, step) = (below(VERTICES), 1 + below(VERTICES - 1));
+                [0, 1, 2].map(|i| points[(first + i * step) % VERTICES])
+            };
+            let corners: Vec<_> = (0..n).map(|_| three()).collect();
             let block = block(&corners);
             let mut ray = rng.ray(scale);
             if round % 3 == 0 {
