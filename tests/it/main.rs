@@ -9,6 +9,7 @@ mod backends;
 mod bench;
 mod bsdf;
 mod bvh;
+mod bvh_packets;
 mod camera;
 mod cli;
 mod cli_input;

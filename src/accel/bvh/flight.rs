@@ -6,9 +6,11 @@
 //! what flies beside it. Knows how steps follow each other; what they compute is in `kernel`.
 
 use super::answers::Answers;
+use super::convoy;
 use super::hierarchy::Hierarchy;
 use super::kernel::{Kernel, Task};
 use super::node::{Kind, Reference};
+use super::packet::RAYS;
 use super::slot::{self, Slot};
 use super::walk::Batch;
 use crate::accel::HitFilter;
@@ -29,7 +31,7 @@ thread_local! {
 
 impl<F: HitFilter, A: Answers, const ANY: bool> Task for Batch<'_, F, A, ANY> {
     #[inline(always)]
-    fn run<K: Kernel>(self, kernel: K) {
+    fn run<K: Kernel>(mut self, kernel: K) {
         // Taken out, so that a filter that asks the accelerator from inside a query gets its own.
         let kept = SLOTS.with(|slots| slots.borrow_mut().take());
         let mut slots = kept.unwrap_or_else(|| slot::slots(IN_FLIGHT));
@@ -38,7 +40,19 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Task for Batch<'_, F, A, ANY> {
                 one_by_one(self, kernel, slot);
             }
         } else if let Some(slots) = slots.first_chunk_mut() {
-            Flight { batch: self, slots, begun: 0 }.run(kernel);
+            match kernel.packets() {
+                None => {
+                    let rays = 0..self.rays.len() as u32;
+                    Flight { batch: &mut self, slots, rays }.run(kernel);
+                }
+                Some(packets) => {
+                    for first in (0..self.rays.len()).step_by(convoy::GROUPS * RAYS) {
+                        let left = convoy::run(&mut self, kernel, packets, first);
+                        let rays = convoy::rays(&left, first, self.rays.len());
+                        Flight { batch: &mut self, slots, rays }.run(kernel);
+                    }
+                }
+            }
         }
         SLOTS.with(|kept| *kept.borrow_mut() = Some(slots));
     }
@@ -123,14 +137,16 @@ fn one_by_one<K: Kernel, F: HitFilter, A: Answers, const ANY: bool>(
 }
 
 /// The state of a batch.
-struct Flight<'a, F, A, const ANY: bool> {
-    batch: Batch<'a, F, A, ANY>,
+struct Flight<'a, 'b, R, F, A, const ANY: bool> {
+    batch: &'a mut Batch<'b, F, A, ANY>,
     slots: &'a mut [Slot; IN_FLIGHT],
-    /// The first ray that has not begun.
-    begun: usize,
+    /// Places of the rays that have not begun.
+    rays: R,
 }
 
-impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
+impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, const ANY: bool>
+    Flight<'_, '_, R, F, A, ANY>
+{
     #[inline(always)]
     fn run<K: Kernel>(mut self, kernel: K) {
         let mut waiting = Waiting::NOTHING;
@@ -197,11 +213,11 @@ impl<F: HitFilter, A: Answers, const ANY: bool> Flight<'_, F, A, ANY> {
     fn turn(&mut self, i: u32) -> Option<usize> {
         let slot = &mut self.slots[i as usize & (IN_FLIGHT - 1)];
         if slot.next == Reference::DONE {
-            let Batch { bvh, rays, answers, .. } = &mut self.batch;
+            let Batch { bvh, rays, answers, .. } = &mut *self.batch;
             answers.take(bvh, rays, slot.ray, slot.best);
-            let ray = rays.get(self.begun)?;
-            slot.begin(ray, self.begun as u32, &bvh.hierarchy);
-            self.begun += 1;
+            let place = self.rays.next()?;
+            let ray = rays.get(place as usize)?;
+            slot.begin(ray, place, &bvh.hierarchy);
         } else {
             self.batch.change_space(slot);
         }

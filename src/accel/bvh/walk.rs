@@ -81,32 +81,41 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
     /// were any.
     #[inline(never)]
     fn consider(&self, slot: &mut Slot, mut nearer: u32, distances: &[f32; SIZE]) -> bool {
-        let (bvh, rays, filter) = (self.bvh, self.rays, self.filter);
         let mut is_better = false;
         while nearer != 0 {
             let lane = nearer.trailing_zeros() as usize & (SIZE - 1);
             nearer &= nearer - 1;
             let t = distances[lane];
             let found = Found { leaf: slot.next, lane: lane as u32, instance: slot.instance };
-            if t > slot.limit {
-                continue;
+            if self.is_better(slot.ray as usize, found, t, slot.limit, slot.best) {
+                (slot.limit, slot.best) = (t, found);
+                is_better = true;
             }
-            // Ties go to the smallest id.
-            if t == slot.limit && bvh.id(slot.best) < bvh.id(found) {
-                continue;
-            }
-            if F::REFUSES && bvh.has_filters {
-                let id = bvh.id(found);
-                let ray = &rays[slot.ray as usize];
-                let asked = bvh.geometry.mesh(id).filtered;
-                if asked && !filter.accept(ray, &resolve(&bvh.geometry, ray, id)) {
-                    continue;
-                }
-            }
-            (slot.limit, slot.best) = (t, found);
-            is_better = true;
         }
         is_better
+    }
+
+    /// Whether a triangle at distance `t` is to be taken by the ray of that place instead of the best so far, at its limit.
+    #[inline(always)]
+    pub(super) fn is_better(
+        &self,
+        place: usize,
+        found: Found,
+        t: f32,
+        limit: f32,
+        best: Found,
+    ) -> bool {
+        let (bvh, ray) = (self.bvh, &self.rays[place]);
+        // Ties go to the smallest id.
+        if t > limit || t == limit && bvh.id(best) < bvh.id(found) {
+            return false;
+        }
+        if F::REFUSES && bvh.has_filters {
+            let id = bvh.id(found);
+            let asked = bvh.geometry.mesh(id).filtered;
+            return !asked || self.filter.accept(ray, &resolve(&bvh.geometry, ray, id));
+        }
+        true
     }
 
     /// [`Self::consider`] where it is not as simple: in instances, and at edges, where exact products decide.

@@ -41,19 +41,31 @@ impl Shear {
     /// For a ray of non-zero direction. `size` is the sum of the largest coordinates of tree and origin. Of origin and direction the fourth elements mean nothing.
     #[inline(always)]
     pub(super) fn new(origin: &[f32; 4], direction: &[f32; 4], size: f32) -> Self {
-        let [x, y, z, _] = direction.map(f32::abs);
-        let largest = if z > x.max(y) { 2 } else { usize::from(y > x) };
-        // Which of the other two is first turns all signs over, which the test does not see.
-        const AXES: [[u32; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
-        let axes = AXES[largest];
+        let (axes, _) = Self::axes(direction);
         let along = |values: &[f32; 4], i: usize| values[axes[i] as usize % 4];
         let depth = along(direction, 2);
         Self {
             origin: [along(origin, 0), along(origin, 1), along(origin, 2)],
             shear: [along(direction, 0) / depth, along(direction, 1) / depth],
             axes,
-            error: 16.0 * UNIT_ROUNDOFF * size,
+            error: Self::error(size),
         }
+    }
+
+    /// The axes for a direction, and the one along which it is largest.
+    #[inline(always)]
+    pub(super) fn axes(direction: &[f32; 4]) -> ([u32; 3], usize) {
+        let [x, y, z, _] = direction.map(f32::abs);
+        let largest = if z > x.max(y) { 2 } else { usize::from(y > x) };
+        // Which of the other two is first turns all signs over, which the test does not see.
+        const AXES: [[u32; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+        (AXES[largest], largest)
+    }
+
+    /// See the field.
+    #[inline(always)]
+    pub(super) fn error(size: f32) -> f32 {
+        16.0 * UNIT_ROUNDOFF * size
     }
 
     /// A vertex relative to the origin, sheared.

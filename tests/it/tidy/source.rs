@@ -29,7 +29,7 @@ impl Source {
         let mut tokens = lex(&text);
         mark(&mut tokens);
         // A file of unit tests, announced where its module is declared.
-        if path.ends_with("/tests.rs") {
+        if path.ends_with("/tests.rs") || path.ends_with("_tests.rs") {
             tokens.iter_mut().for_each(|token| token.in_test = true);
         }
         Self { path, text, tokens }

@@ -1,5 +1,6 @@
 //! Sixteen children as twice eight in AVX2, which has no compression: a table of permutations serves.
 
+use super::packets::Never;
 use super::{Distances, Inside, Kernel, Task, avx2_leaf, plain};
 use crate::accel::bvh::block::Block;
 use crate::accel::bvh::node::{Node, WIDTH};
@@ -34,6 +35,8 @@ fn run<T: Task>(kernel: Avx2, task: T) {
 }
 
 impl Kernel for Avx2 {
+    type Packets = Never;
+
     #[inline(always)]
     fn open<const ORDERED: bool>(self, slot: &mut Slot, node: &Node) -> usize {
         // SAFETY: `self` proves that the machine has the features.

@@ -39,6 +39,13 @@ fn run<T: Task>(kernel: Avx512, task: T) {
 }
 
 impl Kernel for Avx512 {
+    type Packets = Self;
+
+    #[inline(always)]
+    fn packets(self) -> Option<Self> {
+        Some(self)
+    }
+
     #[inline(always)]
     fn open<const ORDERED: bool>(self, slot: &mut Slot, node: &Node) -> usize {
         // SAFETY: `self` proves that the machine has the features.
@@ -143,7 +150,7 @@ struct Grid {
 /// Largest first.
 #[target_feature(enable = "avx512f,avx512vl")]
 #[inline]
-fn sort4(mut keys: __m128i) -> __m128i {
+pub(super) fn sort4(mut keys: __m128i) -> __m128i {
     macro_rules! exchange {
         ($order:literal, $first:literal) => {
             let others = _mm_shuffle_epi32::<$order>(keys);
@@ -179,7 +186,7 @@ fn sort8(mut keys: __m256i) -> __m256i {
 /// Largest first.
 #[target_feature(enable = "avx512f,avx512vl")]
 #[inline]
-fn sort16(mut keys: __m512i) -> __m512i {
+pub(super) fn sort16(mut keys: __m512i) -> __m512i {
     macro_rules! exchange {
         ($others:expr, $first:literal) => {
             let others = $others;
@@ -224,14 +231,14 @@ fn prune(slot: &mut Slot) -> usize {
 
 #[target_feature(enable = "avx512f,avx512vl")]
 #[inline]
-fn load4(values: &[f32; 4]) -> __m128 {
+pub(super) fn load4(values: &[f32; 4]) -> __m128 {
     // SAFETY: reads the four values.
     unsafe { _mm_loadu_ps(values.as_ptr()) }
 }
 
 #[target_feature(enable = "avx512f,avx512vl")]
 #[inline]
-fn to_f32<const N: usize>(bytes: &[u8; N], first: usize) -> __m512 {
+pub(super) fn to_f32<const N: usize>(bytes: &[u8; N], first: usize) -> __m512 {
     debug_assert!(first + 16 <= N);
     // SAFETY: reads sixteen bytes: `first` is from `BoxRay::near`, 0 or 16, or the other of the two.
     let bytes = unsafe { _mm_loadu_si128(bytes.as_ptr().wrapping_add(first).cast()) };

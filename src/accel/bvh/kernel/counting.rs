@@ -1,5 +1,6 @@
 //! A kernel that counts what another one is asked to do: the cost of a tree in steps, which no noise disturbs.
 
+use super::packets::Never;
 use super::{Distances, Inside, Kernel, Task};
 use crate::accel::bvh::block::Block;
 use crate::accel::bvh::node::Node;
@@ -51,6 +52,8 @@ impl<K> Counting<'_, K> {
 }
 
 impl<K: Kernel> Kernel for Counting<'_, K> {
+    type Packets = Never;
+
     #[inline(always)]
     fn open<const ORDERED: bool>(self, slot: &mut Slot, node: &Node) -> usize {
         let before = slot.top as usize;

@@ -12,8 +12,14 @@ mod avx2_leaf;
 mod avx512;
 #[cfg(target_arch = "x86_64")]
 mod avx512_leaf;
+#[cfg(target_arch = "x86_64")]
+mod avx512_packet;
 mod counting;
+mod packets;
 mod plain;
+#[cfg(test)]
+#[cfg(target_arch = "x86_64")]
+mod packet_tests;
 #[cfg(test)]
 mod tests;
 
@@ -25,6 +31,7 @@ use plain::Plain;
 
 pub(super) use counting::Count;
 pub use counting::Steps;
+pub(super) use packets::{PacketKernel, Touched};
 
 use super::block::{Block, SIZE};
 use super::node::Node;
@@ -58,6 +65,15 @@ pub(super) fn dispatch<T: Task>(task: T) {
 
 /// The operations on vectors.
 pub(super) trait Kernel: Copy {
+    /// Those on packets.
+    type Packets: PacketKernel;
+
+    /// If it has any.
+    #[inline(always)]
+    fn packets(self) -> Option<Self::Packets> {
+        None
+    }
+
     /// Pushes the children of `node` that the ray meets up to its limit; returns the new height of its stack. If
     /// `ORDERED`, nearest last, with their entries; otherwise leaves last, without.
     fn open<const ORDERED: bool>(self, slot: &mut Slot, node: &Node) -> usize;

@@ -1,5 +1,6 @@
 //! Loops over arrays, which the compiler turns into whatever vectors the machine has.
 
+use super::packets::Never;
 use super::{Distances, Inside, Kernel};
 use crate::accel::bvh::block::{Block, SIZE, VERTICES};
 use crate::accel::bvh::node::{Node, WIDTH};
@@ -11,6 +12,8 @@ use crate::accel::bvh::woop::{LARGEST, SMALLEST, Shear};
 pub(in crate::accel::bvh) struct Plain;
 
 impl Kernel for Plain {
+    type Packets = Never;
+
     #[inline(always)]
     fn open<const ORDERED: bool>(self, slot: &mut Slot, node: &Node) -> usize {
         let (entries, mut met) = meet(slot, node);
