@@ -29,4 +29,4 @@ pub use fingerprint::fingerprint;
 pub use image_request::{ImageRequest, ImageTable};
 pub use mtl::load_mtl;
 pub use obj::{LoadedModel, load_obj};
-pub use scene_file::{LoadOptions, load_scene, load_scene_with};
+pub use scene_file::{LoadOptions, check_scene, load_scene, load_scene_with};

@@ -3,7 +3,7 @@
 #![cfg(feature = "bvh")]
 
 use crate::accel::sphere;
-use glint::accel::bvh::Bvh;
+use glint::accel::bvh::{Bvh, Steps};
 use glint::accel::{Accelerator, AcceptAll, BruteForce};
 use glint::geometry::{Geometry, Hit, Instance, Object, Ray, TriangleMesh};
 use glint::math::{Affine, DAffine3, DMat3, DVec3, Vec3};
@@ -157,4 +157,32 @@ fn what_is_no_ray_hits_nothing() {
     rays.extend([from_to(2.0, 0.0), from_to(0.0, nan), from_to(nan, inf), from_to(0.0, 0.0)]);
     assert!(closest(&bvh, &rays).iter().all(|hit| !hit.is_hit()));
     assert!(closest(&bvh, &[from_to(0.0, inf), from_to(-0.0, 1e30)]).iter().all(Hit::is_hit));
+}
+
+/// Steps are counted: a ray that misses everything opens the root, and what is hit was in a leaf.
+#[test]
+fn steps_are_those_that_rays_take() {
+    let mesh = sphere(Vec3::ZERO, 1.0, 100, false);
+    let geometry = Arc::new(Geometry { meshes: vec![mesh], ..Geometry::default() });
+    let bvh = Bvh::build(geometry, 1).expect("it builds");
+    let away: Vec<_> = (0..100).map(|i| Ray::new(Vec3::X * (2.0 + i as f32), Vec3::X)).collect();
+    let missed = bvh.steps(&away, &AcceptAll, false);
+    assert_eq!(missed, Steps { nodes: 100, ..Steps::default() });
+    // From inside of it every ray hits.
+    let rays = rays(0.1, 1000);
+    let [closest, any] = [false, true].map(|any| bvh.steps(&rays, &AcceptAll, any));
+    for steps in [closest, any] {
+        // Down to a triangle, which takes at least depth minus one nodes; all but the root were a child that was met.
+        assert!(steps.nodes > 2 * 1000 && steps.nodes + steps.leaves <= steps.children + 1000);
+        assert!(steps.leaves >= steps.distances && steps.distances >= 1000);
+    }
+    assert!(closest.prunes >= 1000 && any.prunes == 0);
+    // Of one ray after the other they are the same, and their sum.
+    let mut sum = Steps::default();
+    for ray in &rays {
+        let one = bvh.steps(std::slice::from_ref(ray), &AcceptAll, false);
+        sum.nodes += one.nodes;
+        sum.leaves += one.leaves;
+    }
+    assert_eq!((sum.nodes, sum.leaves), (closest.nodes, closest.leaves));
 }

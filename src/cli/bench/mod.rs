@@ -29,6 +29,8 @@ pub(super) fn run(args: &Bench) -> Result<u8> {
         }
         check_writable(path)?;
     }
+    // Not after an hour of the others.
+    args.scenes.iter().try_for_each(|path| load::check_scene(path))?;
     let mut report = Report::new(command())?;
     say(args, &table::head(&report, &settings));
     for (path, n) in args.scenes.iter().zip(1..) {

@@ -147,10 +147,31 @@ pub fn load_scene(path: &Path) -> Result<Scene> {
 /// When the scene file is wrong, or a model that it places cannot be read. Smaller faults, such as
 /// textures that cannot be read, are [`Scene::warnings`].
 pub fn load_scene_with(path: &Path, options: LoadOptions) -> Result<Scene> {
+    match kind_of(path)? {
+        Kind::SceneFile => load_scene_file(path, options),
+        Kind::Model => load_model_alone(path, options),
+    }
+}
+
+/// Whether there is a file that could be a scene: what can be said before reading it.
+///
+/// # Errors
+/// When its name is not that of a scene, or it cannot be read.
+pub fn check_scene(path: &Path) -> Result<()> {
+    kind_of(path)?;
+    open_regular(path).map(drop)
+}
+
+enum Kind {
+    SceneFile,
+    Model,
+}
+
+fn kind_of(path: &Path) -> Result<Kind> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match extension.as_str() {
-        "toml" => load_scene_file(path, options),
-        "obj" => load_model_alone(path, options),
+        "toml" => Ok(Kind::SceneFile),
+        "obj" => Ok(Kind::Model),
         _ => Err(Error::Usage(format!(
             "{}: a scene is a .toml or an .obj file; rename or convert it",
             path.display()

@@ -1,0 +1,133 @@
+//! `glint bench` as a command: what it prints, and what it says of wrong usage.
+
+use crate::support::program::Bench;
+use crate::support::schema::{faults, not_promised, schema};
+use serde_json::Value;
+use std::fs;
+
+/// Quick: few rays, taken twice.
+const QUICK: [&str; 6] = ["--rays", "2k", "--repetitions", "2", "--threads", "1,2"];
+
+fn bench(bench: &Bench, arguments: &[&str]) -> (i32, String, String) {
+    let output = bench.glint(&[&["bench"], arguments].concat());
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let (out, said) = (text(&output.stdout), text(&output.stderr));
+    assert!(!said.contains("panicked"), "{said}");
+    (output.status.code().unwrap_or(-1), out, said)
+}
+
+/// A folder with a model that has an awkward name, and a scene that places it twice.
+fn folder() -> Bench {
+    let bench = Bench::new();
+    let made = bench.glint(&["generate", "city", "-o", "c.obj", "--triangles", "4k"]);
+    assert!(made.status.success());
+    fs::rename(bench.path("c.obj"), bench.path("a<b>&'c'.obj")).unwrap();
+    let twice = "[[object]]\nfile = \"a<b>&'c'.obj\"\n\n\
+        [[object]]\nfile = \"a<b>&'c'.obj\"\ntranslate = [100, 0, 20]\n";
+    bench.file("twice.toml", twice);
+    bench
+}
+
+#[test]
+fn the_schema_names_what_scripts_rely_on() {
+    let promised = "runs/[]/backend runs/[]/variant runs/[]/isa runs/[]/threads runs/[]/ray_kind \
+        runs/[]/rays_per_second/median runs/[]/rays_per_second/min runs/[]/rays_per_second/max \
+        runs/[]/hits runs/[]/agreement/compared runs/[]/agreement/missed runs/[]/agreement/false_hits \
+        runs/[]/agreement/ties runs/[]/agreement/unexplained builds/[]/backend builds/[]/variant \
+        builds/[]/seconds builds/[]/bytes machine/cpu machine/threads machine/date";
+    assert_eq!(not_promised(&schema("bench"), promised), Vec::<String>::new());
+}
+
+#[test]
+fn a_bench_of_two_scenes_says_all_of_it_in_json_and_on_a_page() {
+    let folder = folder();
+    let scenes = ["a<b>&'c'.obj", "twice.toml"];
+    let (code, out, said) =
+        bench(&folder, &[&scenes[..], &QUICK, &["--json", "-o", "r.html"]].concat());
+    assert_eq!(code, 0, "{said}");
+    let report: Value = serde_json::from_str(&out).expect("JSON alone on stdout");
+    assert_eq!(faults(&schema("bench"), &report, ""), Vec::<String>::new());
+
+    // Both scenes have every kind, both sides, both numbers of threads; all right and timed.
+    let runs = report["runs"].as_array().unwrap();
+    for scene in scenes {
+        for (kind, _) in glint::study::bench::RayKind::ALL {
+            for threads in [1, 2] {
+                let mut backends: Vec<_> = runs
+                    .iter()
+                    .filter(|r| r["scene"] == scene && r["ray_kind"] == kind)
+                    .filter(|r| r["threads"] == threads)
+                    .filter_map(|r| r["backend"].as_str())
+                    .collect();
+                backends.dedup();
+                let expected: &[&str] =
+                    if cfg!(feature = "bvh") { &["embree", "bvh"] } else { &["embree"] };
+                assert_eq!(backends, expected, "{scene} {kind} {threads}");
+            }
+        }
+    }
+    for run in runs {
+        assert!(run["rays_per_second"]["median"].as_f64() > Some(0.0), "{run}");
+        assert!(run["agreement"]["compared"].as_u64() > Some(100), "{run}");
+    }
+    for build in report["builds"].as_array().unwrap() {
+        assert!(build["repetitions"].as_u64() >= Some(3), "{build}");
+        assert!(build["bytes"].as_u64() > Some(10_000), "{build}");
+    }
+    assert_eq!(report["scenes"][1]["triangles"], 8000);
+    assert_eq!(report["scenes"][1]["stored_triangles"], 4000);
+
+    // The tables went to stderr.
+    for words in ["against Embree", "M rays/s", "bytes/triangle", "deep-bounce", "twice.toml"] {
+        assert!(said.contains(words), "no `{words}` in {said}");
+    }
+    assert!(said.lines().all(|line| line.chars().count() < 120), "{said}");
+
+    // One file, which escapes names and needs nothing from elsewhere.
+    let page = fs::read_to_string(folder.path("r.html")).unwrap();
+    assert!(page.contains("<h2>a&lt;b&gt;&amp;&#39;c&#39;.obj</h2>"));
+    assert!(!page.contains("a<b>"));
+    assert_eq!(page.matches("<svg").count(), 2 * 6 * 2);
+    for elsewhere in ["http", "src=", "href=", "@import", "url("] {
+        assert!(!page.contains(elsewhere), "{elsewhere}");
+    }
+}
+
+#[test]
+fn tables_go_to_stdout_unless_asked_not_to() {
+    let folder = folder();
+    let quick = [&["twice.toml", "--kinds", "random", "--isa", "portable"], &QUICK[..]].concat();
+    let (code, out, said) = bench(&folder, &quick);
+    assert_eq!(code, 0, "{said}");
+    assert!(out.contains("random: 2000 rays") && !out.contains("primary"), "{out}");
+    assert!(!out.contains("avx"), "{out}");
+    let (code, out, said) = bench(&folder, &[&quick[..], &["--quiet"]].concat());
+    assert_eq!((code, out.as_str(), said.as_str()), (0, "", ""));
+}
+
+#[test]
+fn wrong_usage_exits_with_2_and_other_errors_with_1() {
+    let folder = folder();
+    for (arguments, code, words) in [
+        (&["twice.toml", "-o", "r.txt"][..], 2, "must be .html"),
+        (&["twice.toml", "--kinds", "first"], 2, "first-bounce"),
+        (&["twice.toml", "--time", "90"], 2, "90s"),
+        (&["twice.toml", "--time", "0s"], 2, "above 0"),
+        (&["twice.toml", "--rays", "1G"], 2, "at most"),
+        (&["twice.toml", "--threads", "1,many"], 2, "0 to 1024"),
+        (&["twice.toml", "--isa", "neon"], 2, "avx2"),
+        (&["twice.toml", "--repetitions", "0"], 2, "1..=1000"),
+        (&[], 2, "SCENE"),
+        (&["none.obj"], 1, "none.obj"),
+        // Before the first one is raced.
+        (&["twice.toml", "none.obj"], 1, "none.obj"),
+        (&["twice.toml", "r.json"], 2, "a .toml or an .obj"),
+        (&["twice.toml", "-o", "no/r.html"], 1, "cannot write"),
+    ] {
+        let (found, out, said) = bench(&folder, arguments);
+        assert_eq!(found, code, "{arguments:?}: {said}");
+        assert!(out.is_empty(), "{arguments:?}: {out}");
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+    assert!(!folder.names().iter().any(|name| name.ends_with("html")));
+}
