@@ -58,6 +58,7 @@ pub(super) fn run<K: Kernel, F: HitFilter, A: Answers, const ANY: bool>(
         n => u64::MAX >> (64 - n.min(64)),
     });
     let Some(root) = batch.bvh.hierarchy.own.root else { return left };
+    // Instances are left to `flight`; and so is all of it where not even the first rays stay together, at no cost.
     if batch.bvh.hierarchy.instances.root.is_some() || !rays.first_chunk().is_some_and(is_coherent)
     {
         return left;

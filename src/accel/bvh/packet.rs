@@ -7,7 +7,7 @@
 use super::kernel::PacketKernel;
 use super::node::{Reference, WIDTH};
 use super::slot::{Found, ROOM};
-use super::woop::Shear;
+use super::woop::{LARGEST, Shear};
 use crate::geometry::{NONE, Ray};
 use crate::math::{UNIT_ROUNDOFF, Vec4};
 use crate::os::Arena;
@@ -85,7 +85,8 @@ pub(super) fn is_coherent(rays: &[Ray; RAYS]) -> bool {
         let (origin, direction) = (ray.origin.extend(0.0), ray.direction.extend(0.0));
         let is_finite = (origin * 0.0 + direction * 0.0).cmpeq(Vec4::ZERO).all();
         let is_like = octant(ray) == of_first && Shear::axes(&direction.to_array()).1 == axis;
-        is &= is_finite & is_like & direction.cmpne(Vec4::ZERO).any();
+        let is_ray = direction.cmpne(Vec4::ZERO).any() & (ray.t_min >= 0.0);
+        is &= is_finite & is_like & is_ray;
     }
     is
 }
@@ -168,11 +169,18 @@ impl Packet {
         // that is farthest on the way, by one of the extreme reciprocals.
         let [first, last] = kernel.range(origin);
         let (ahead, behind) = if self.near[axis] == 0 { (last, first) } else { (first, last) };
-        let margin = MARGIN * kernel.range(sizes)[1];
+        let [_, size] = kernel.range(sizes);
         for (k, r) in kernel.range(reciprocal).into_iter().enumerate() {
+            let margin = MARGIN * size * r.abs();
+            // Where products might overflow nothing is known: entered at once, and never left.
+            let is_known = size * r.abs() < LARGEST;
+            let [r, near, far] = match is_known {
+                true => [r, ahead * r + margin, behind * r - margin],
+                false => [0.0, f32::INFINITY, f32::NEG_INFINITY],
+            };
             self.hull.reciprocal[k][axis] = r;
-            self.hull.near_offset[k][axis] = ahead * r + margin * r.abs();
-            self.hull.far_offset[k][axis] = behind * r - margin * r.abs();
+            self.hull.near_offset[k][axis] = near;
+            self.hull.far_offset[k][axis] = far;
         }
     }
 

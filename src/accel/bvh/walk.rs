@@ -70,10 +70,10 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
         } else {
             self.consider_with_care(slot, inside, unsure)
         };
-        match (ANY, is_better) {
+        match ANY {
             // Down to the reference that ends it.
-            (true, _) => select_unpredictable(is_better, 1, top),
-            (false, _) => kernel.prune(slot),
+            true => select_unpredictable(is_better, 1, top),
+            false => kernel.prune(slot),
         }
     }
 

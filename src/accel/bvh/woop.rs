@@ -38,7 +38,8 @@ pub(super) const SMALLEST: f32 = 1e-36;
 pub(super) const LARGEST: f32 = 1e36;
 
 impl Shear {
-    /// For a ray of non-zero direction. `size` is the sum of the largest coordinates of tree and origin. Of origin and direction the fourth elements mean nothing.
+    /// For a ray of non-zero direction. `size` is the sum of the largest coordinates of tree and origin. Of origin and
+    /// direction the fourth elements mean nothing.
     #[inline(always)]
     pub(super) fn new(origin: &[f32; 4], direction: &[f32; 4], size: f32) -> Self {
         let (axes, _) = Self::axes(direction);

@@ -109,7 +109,7 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
 /// The corners' numbers of the triangles, a lane each.
 #[target_feature(enable = "avx2")]
 #[inline]
-fn numbers(block: &Block) -> __m256i {
+pub(super) fn numbers(block: &Block) -> __m256i {
     // SAFETY: reads the eight values.
     _mm256_cvtepi16_epi32(unsafe { _mm_loadu_si128(block.corners.as_ptr().cast()) })
 }

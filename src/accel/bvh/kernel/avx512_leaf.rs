@@ -1,5 +1,6 @@
 //! Leaves in AVX-512: all vertices at once, then the edges of eight triangles, then their distances.
 
+use super::avx2_leaf::numbers;
 use super::{Distances, Inside};
 use crate::accel::bvh::block::{Block, SIZE};
 use crate::accel::bvh::slot::Slot;
@@ -84,14 +85,6 @@ pub(super) fn distances(slot: &Slot, block: &Block) -> Distances {
     // SAFETY: writes eight values where there are eight.
     unsafe { _mm256_storeu_ps(distances.t.as_mut_ptr(), t) };
     distances
-}
-
-/// The corners' numbers of the triangles, a lane each.
-#[target_feature(enable = "avx512f,avx512vl,avx2")]
-#[inline]
-fn numbers(block: &Block) -> __m256i {
-    // SAFETY: reads the eight values.
-    _mm256_cvtepi16_epi32(unsafe { _mm_loadu_si128(block.corners.as_ptr().cast()) })
 }
 
 #[target_feature(enable = "avx512f")]

@@ -16,13 +16,19 @@ const ROOT: Reference = Reference::new(Kind::Node, 0);
 fn rays(rng: &mut CounterRng, scale: f32, spread: f32) -> Option<[Ray; RAYS]> {
     let mut point = || Vec3::new(rng.unit(), rng.unit(), rng.unit()) * 2.0 - Vec3::ONE;
     let (from, to) = (point() * 3.0, point());
-    let along_an_axis = point().x > 0.5;
+    let (along_an_axis, is_steep) = (point().x > 0.5, point().x > 0.5);
     let rays = std::array::from_fn(|i| {
         let origin = from + point() * spread * (i % 3) as f32;
-        let towards = to + point() * spread - origin;
+        let mut towards = to + point() * spread - origin;
+        if is_steep {
+            // From ordinary to next to nothing, where products with large coordinates overflow.
+            towards.y *= 10.0_f32.powi(-(i as i32));
+            towards.z *= 10.0_f32.powi(i as i32 - 15);
+        }
         let direction = if along_an_axis { Vec3::X.with_y(-0.0) } else { towards };
         let t_max = if i % 4 == 0 { 0.5 + 2.0 * point().y.abs() } else { f32::INFINITY };
-        Ray { t_min: 0.1 * (i % 2) as f32, t_max, ..Ray::new(origin * scale, direction * scale) }
+        let direction = if scale < 1e15 { direction * scale } else { direction };
+        Ray { t_min: 0.1 * (i % 2) as f32, t_max, ..Ray::new(origin * scale, direction) }
     });
     is_coherent(&rays).then_some(rays)
 }
@@ -42,7 +48,7 @@ fn every_packet(check: impl Fn(Avx512, &mut Packet, &[Ray; RAYS], f32, &mut Coun
     let mut rng = CounterRng::new(0);
     let mut count = 0;
     for round in 0..6000 {
-        let scale = 10.0_f32.powi(round % 21 - 10);
+        let scale = 10.0_f32.powi(round % 41 - 10);
         let spread = [0.001, 0.03, 0.3][round as usize % 3];
         if let Some(rays) = rays(&mut rng, scale, spread) {
             packets[0].begin(kernel, &rays, 0, scale, ROOT);
