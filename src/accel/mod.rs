@@ -10,10 +10,12 @@ mod brute;
 pub mod bvh;
 #[cfg(feature = "embree")]
 pub mod embree;
+mod options;
 pub mod oracle;
 mod resolve;
 
 pub use brute::BruteForce;
+pub use options::{BuildOptions, Quality};
 pub use resolve::{resolve, resolve_all};
 
 use crate::geometry::{Hit, Ray};
@@ -61,4 +63,30 @@ pub struct BuildStats {
     pub seconds: f64,
     /// Bytes of nodes and leaves, without the geometry buffers.
     pub bytes: usize,
+    /// What it made, where the backend says so.
+    pub shape: Option<TreeShape>,
+}
+
+/// What a hierarchy is made of: its trees over triangles together, each object's once.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TreeShape {
+    /// Inner nodes.
+    pub nodes: usize,
+    /// Leaves.
+    pub leaves: usize,
+    /// Longest way from a root to an inner node, in nodes.
+    pub depth: usize,
+    /// Steps that a random ray through the box of everything is expected to take: the surface of all nodes and leaves
+    /// of a tree over that of its root, of the costliest tree.
+    pub sah_cost: f64,
+}
+
+impl TreeShape {
+    /// Both together.
+    pub fn add(&mut self, other: &Self) {
+        self.nodes += other.nodes;
+        self.leaves += other.leaves;
+        self.depth = self.depth.max(other.depth);
+        self.sah_cost = self.sah_cost.max(other.sah_cost);
+    }
 }

@@ -4,6 +4,7 @@ use super::values::{
     Env, count, crop, direction, duration, env, field_of_view, filter, finite, named,
     override_material, point, replay, rgb_fractions, size, threads,
 };
+use crate::accel::{BuildOptions, Quality};
 use crate::filter::Filter;
 use crate::generate::Kind;
 use crate::image::ToneMap;
@@ -140,6 +141,8 @@ pub(super) struct Render {
     /// Use no wider vector instructions than these; the picture is the same [default: the widest]
     #[arg(long, value_name = "NAME", value_parser = named("instruction set", &Isa::ALL), help_heading = "Machine")]
     pub(super) isa: Option<Isa>,
+    #[command(flatten)]
+    pub(super) build: Build,
     /// Threads to use, up to 1024; 0 is one a core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads, help_heading = "Machine")]
     pub(super) threads: usize,
@@ -203,6 +206,26 @@ pub(super) struct Bench {
     /// Which axis of the scene is up [default: y]
     #[arg(long, value_enum, help_heading = "Race")]
     pub(super) up: Option<Up>,
+    #[command(flatten)]
+    pub(super) build: Build,
+}
+
+/// How hierarchies are built.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct Build {
+    /// Work on the hierarchy that finds what rays hit: fast, default or high; the picture is the same
+    #[arg(long, value_name = "NAME", default_value = "default", value_parser = named("quality", &Quality::ALL),
+          help_heading = "Machine")]
+    pub(super) quality: Quality,
+    /// Hierarchy in a quarter of the memory, and about half as fast; the picture is the same
+    #[arg(long, help_heading = "Machine")]
+    pub(super) low_memory: bool,
+}
+
+impl Build {
+    pub(super) fn options(self, threads: usize) -> BuildOptions {
+        BuildOptions { threads, quality: self.quality, is_compact: self.low_memory }
+    }
 }
 
 const GENERATE_EXAMPLES: &str = "\

@@ -67,7 +67,8 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     }
 
     // A world to an accelerator: the only place where a backend is chosen.
-    let (geometry, threads) = (world.geometry.clone(), args.threads);
+    let geometry = world.geometry.clone();
+    let options = args.build.options(args.threads);
     let mut job = Job {
         args,
         settings: &settings,
@@ -83,14 +84,14 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     match chosen {
         #[cfg(feature = "embree")]
         Chosen::Embree => {
-            let embree = EmbreeAccelerator::build(geometry, threads)?;
+            let embree = EmbreeAccelerator::with_options(geometry, &options)?;
             built(&mut phases);
             job.name = ("embree", embree.version());
             finish(&job, &world, &embree, &camera, phases)
         }
         #[cfg(feature = "bvh")]
         Chosen::Bvh => {
-            let bvh = Bvh::build(geometry, threads)?;
+            let bvh = Bvh::with_options(geometry, &options)?;
             built(&mut phases);
             job.name = ("bvh", env!("CARGO_PKG_VERSION").to_owned());
             finish(&job, &world, &bvh, &camera, phases)

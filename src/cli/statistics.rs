@@ -38,6 +38,8 @@ pub(super) struct Statistics {
     threads: usize,
     seconds: Phases,
     memory_bytes: Memory,
+    /// What the hierarchy is made of, where the backend says so.
+    hierarchy: Option<Hierarchy>,
     /// The least that a pixel got.
     samples_per_pixel: u64,
     paths: u64,
@@ -68,6 +70,20 @@ struct Memory {
     textures: usize,
     film: usize,
     peak_rss: u64,
+}
+
+/// The trees over triangles together, each object's once.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Hierarchy {
+    nodes: usize,
+    leaves: usize,
+    /// Longest way from a root to an inner node, in nodes.
+    depth: usize,
+    /// Nodes and leaves that a random ray is expected to visit, by the surface area heuristic.
+    sah_cost: f64,
+    /// Of nodes and leaves, for each stored triangle.
+    bytes_per_triangle: f64,
 }
 
 /// Rays traced.
@@ -126,6 +142,14 @@ impl Statistics {
                 film: rendered.film.region().pixels() * Film::BYTES_PER_PIXEL,
                 peak_rss: peak_rss_bytes(),
             },
+            hierarchy: build.shape.map(|shape| Hierarchy {
+                nodes: shape.nodes,
+                leaves: shape.leaves,
+                depth: shape.depth,
+                sah_cost: shape.sah_cost,
+                bytes_per_triangle: build.bytes as f64
+                    / world.geometry.stored_triangles().max(1) as f64,
+            }),
             samples_per_pixel: rendered.film.samples().0,
             paths: ledger.camera_rays,
             rays: Rays {

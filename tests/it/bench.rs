@@ -4,7 +4,7 @@
 use glint::accel::bvh::Bvh as Backend;
 #[cfg(not(feature = "bvh"))]
 use glint::accel::embree::EmbreeAccelerator as Backend;
-use glint::accel::{Accelerator, AcceptAll, BuildStats, HitFilter};
+use glint::accel::{Accelerator, AcceptAll, BuildOptions, BuildStats, HitFilter};
 use glint::generate::{Kind, Model, write_obj};
 use glint::geometry::{Hit, PrimitiveId, Ray};
 use glint::load::load_scene;
@@ -156,6 +156,7 @@ fn settings(threads: &[usize]) -> Settings {
         repetitions: Some(2),
         time: Duration::from_secs(1),
         all_calls: false,
+        build: BuildOptions::default(),
     }
 }
 

@@ -4,7 +4,7 @@
 
 use crate::accel::sphere;
 use glint::accel::bvh::{Bvh, Steps};
-use glint::accel::{Accelerator, AcceptAll, BruteForce};
+use glint::accel::{Accelerator, AcceptAll, BruteForce, BuildOptions, Quality};
 use glint::geometry::{Geometry, Hit, Instance, Object, Ray, TriangleMesh};
 use glint::math::{Affine, DAffine3, DMat3, DVec3, Vec3};
 use glint::os::Isa;
@@ -125,18 +125,43 @@ fn the_instruction_set_changes_no_hit() {
         objects: vec![object],
         instances: (0..40).map(|i| place(f64::from(i) * 0.3 - 6.0)).collect(),
     });
-    let bvh = Bvh::build(geometry, 2).expect("it builds");
-    bvh.validate().expect("a whole tree");
+    let bvh = Bvh::build(geometry.clone(), 2).expect("it builds");
     let rays = rays(3.0, 20_000);
     let single: Vec<_> = rays.iter().map(|&ray| closest(&bvh, &[ray])[0]).collect();
     assert!(single.iter().filter(|hit| hit.is_hit()).count() > 5000);
-    for (name, isa) in Isa::ALL {
-        isa.limit();
-        assert_eq!(closest(&bvh, &rays), single, "{name}");
-        let mut blocked = vec![false; rays.len()];
-        bvh.occluded(&rays, &AcceptAll, &mut blocked);
-        assert!(blocked.iter().zip(&single).all(|(&b, hit)| b == hit.is_hit()), "{name}");
+    // Nor does how the tree was built, or how leaves are kept.
+    let qualities = Quality::ALL.map(|(_, quality)| (quality, false));
+    for (quality, is_compact) in qualities.into_iter().chain([(Quality::Default, true)]) {
+        let options = BuildOptions { threads: 2, quality, is_compact };
+        let bvh = Bvh::with_options(geometry.clone(), &options).expect("it builds");
+        bvh.validate().expect("a whole tree");
+        for (name, isa) in Isa::ALL {
+            isa.limit();
+            assert_eq!(closest(&bvh, &rays), single, "{name}, {options:?}");
+            let mut blocked = vec![false; rays.len()];
+            bvh.occluded(&rays, &AcceptAll, &mut blocked);
+            assert!(blocked.iter().zip(&single).all(|(&b, hit)| b == hit.is_hit()), "{name}");
+        }
     }
+}
+
+/// What a build says of its tree is what is found in it; compact leaves take a fifth of the memory.
+#[test]
+fn statistics_are_those_of_the_tree() {
+    let mesh = sphere(Vec3::ZERO, 1.0, 200, false);
+    let triangles = mesh.triangles.len();
+    let geometry = Arc::new(Geometry { meshes: vec![mesh], ..Geometry::default() });
+    let bytes = [false, true].map(|is_compact| {
+        let options = BuildOptions { is_compact, ..BuildOptions::default() };
+        let bvh = Bvh::with_options(geometry.clone(), &options).expect("it builds");
+        let (stats, walked) = (bvh.build_stats(), bvh.validate().expect("a whole tree"));
+        let (told, found) = (stats.shape.expect("it is told"), walked.shape);
+        assert_eq!((told.nodes, told.leaves, told.depth), (found.nodes, found.leaves, found.depth));
+        assert!(told.sah_cost <= found.sah_cost && found.sah_cost < 1.2 * told.sah_cost);
+        assert_eq!(walked.triangles, triangles);
+        walked.bytes_per_triangle
+    });
+    assert!(bytes[0] < 32.0 && bytes[1] < 0.4 * bytes[0], "{bytes:?}");
 }
 
 /// Rays that are none miss, and do not hang.

@@ -13,7 +13,13 @@ impl Bvh {
     /// The corners of a triangle in a leaf, as [`crate::geometry::Geometry::world_vertices()`] gives them.
     #[inline(always)]
     pub(super) fn vertices(&self, found: Found) -> ([DVec3; 3], f32) {
-        let corners = self.hierarchy.block(found.leaf).vertices(found.lane as usize);
+        let corners = if self.hierarchy.is_compact {
+            let id = self.id(found);
+            self.geometry.mesh(id).vertices(id.primitive)
+        } else {
+            // SAFETY: the hierarchy is not compact.
+            unsafe { self.hierarchy.block(found.leaf) }.vertices(found.lane as usize)
+        };
         self.geometry.placed_vertices(corners, found.instance)
     }
 }

@@ -23,14 +23,14 @@ pub(super) struct Block {
     /// For each triangle the numbers of its three vertices, four bits each, the first one lowest. Absent ones have those of
     /// the first triangle, and the sign.
     pub(super) corners: [i16; SIZE],
-    /// Place of the first triangle in the order of its tree; the others follow.
+    /// Where the number of the first triangle is kept; those of the others follow.
     pub(super) first: u32,
 }
 
 const _: () = assert!(size_of::<Block>() == UNIT);
 
 impl Block {
-    /// The triangles of those numbers, the first of which is at `first` in the tree's order.
+    /// The triangles of those numbers, which are kept from place `first` on.
     ///
     /// # Panics
     /// If they are none, or do not fit.
@@ -103,7 +103,7 @@ fn place(axis: usize, vertex: usize) -> usize {
 /// The triangles of some meshes, numbered through.
 pub(super) struct Meshes<'a> {
     meshes: &'a [TriangleMesh],
-    numbers: Numbers,
+    numbers: &'a Numbers,
 }
 
 /// From numbers to meshes and back.
@@ -148,8 +148,8 @@ impl Numbers {
 }
 
 impl<'a> Meshes<'a> {
-    pub(super) fn new(meshes: &'a [TriangleMesh]) -> Self {
-        Self { meshes, numbers: Numbers::new(meshes) }
+    pub(super) fn new(meshes: &'a [TriangleMesh], numbers: &'a Numbers) -> Self {
+        Self { meshes, numbers }
     }
 
     /// The corners of a triangle.
@@ -157,9 +157,5 @@ impl<'a> Meshes<'a> {
     pub(super) fn vertices(&self, triangle: u32) -> [Vec3; 3] {
         let (mesh, primitive) = self.numbers.locate(triangle);
         self.meshes[mesh].vertices(primitive)
-    }
-
-    pub(super) fn into_numbers(self) -> Numbers {
-        self.numbers
     }
 }

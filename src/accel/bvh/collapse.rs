@@ -3,9 +3,10 @@
 //! Which binary nodes become children of which is what `cut` has chosen. Knows nothing of how nodes and leaves are
 //! stored.
 
-use super::build::{BinaryNode, BinaryTree, Kind};
+use super::build::{BinaryNode, BinaryTree, Kind, half_area};
 use super::cut::Cuts;
 use super::node::WIDTH;
+use crate::accel::TreeShape;
 use rayon::prelude::*;
 
 /// A tree of wide nodes, root first.
@@ -33,6 +34,29 @@ pub(super) struct WideNode {
     pub(super) leaves_before: u32,
 }
 
+impl WideTree {
+    /// What it is made of; `nodes` are those of the binary tree.
+    pub(super) fn shape(&self, nodes: &[BinaryNode]) -> TreeShape {
+        let area = |&child: &u32| f64::from(half_area(&nodes[child as usize].bounds()));
+        let of_children =
+            |part: &[WideNode]| part.iter().flat_map(WideNode::children).map(area).sum::<f64>();
+        // Summed in one order, whatever thread does what.
+        let parts: Vec<_> = self.nodes.par_chunks(4096).map(of_children).collect();
+        let whole = nodes.first().map_or(0.0, |root| f64::from(half_area(&root.bounds())));
+        TreeShape {
+            nodes: self.nodes.len(),
+            leaves: self.leaves,
+            depth: self.depth,
+            sah_cost: (whole + parts.iter().sum::<f64>()) / whole.max(f64::MIN_POSITIVE),
+        }
+    }
+
+    /// The ranges of primitives of all leaves, in the order of the nodes.
+    pub(super) fn leaf_ranges(&self, nodes: &[BinaryNode]) -> impl Iterator<Item = (u32, u32)> {
+        self.nodes.iter().flat_map(|node| node.leaf_ranges(nodes))
+    }
+}
+
 impl WideNode {
     /// Nodes of the binary tree; those that stay inner first.
     pub(super) fn children(&self) -> &[u32] {
@@ -42,6 +66,15 @@ impl WideNode {
     /// How many of the children are leaves.
     pub(super) fn leaves(&self) -> u8 {
         self.count - self.inner
+    }
+
+    /// The ranges of primitives of the leaves among the children, in their order.
+    pub(super) fn leaf_ranges(&self, nodes: &[BinaryNode]) -> impl Iterator<Item = (u32, u32)> {
+        let leaves = self.children()[usize::from(self.inner)..].iter();
+        leaves.filter_map(|&child| match nodes[child as usize].kind() {
+            Kind::Leaf { start, end } => Some((start, end)),
+            Kind::Inner(_) => None,
+        })
     }
 
     /// The wide nodes among the children, in their order.

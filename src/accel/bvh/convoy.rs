@@ -7,6 +7,7 @@
 use super::answers::Answers;
 use super::block::{self, Block};
 use super::kernel::{Kernel, PacketKernel, Touched};
+use super::leaves::Leaves;
 use super::node::{Kind, Reference};
 use super::packet::{Packet, Packets, RAYS, is_coherent};
 use super::slot::Found;
@@ -45,8 +46,8 @@ thread_local! {
 
 /// Traces what travels together of up to [`GROUPS`] groups of a batch, which begin at ray `first`; returns what is left.
 #[inline(always)]
-pub(super) fn run<K: Kernel, F: HitFilter, A: Answers, const ANY: bool>(
-    batch: &mut Batch<'_, F, A, ANY>,
+pub(super) fn run<K: Kernel, F: HitFilter, A: Answers, L: Leaves, const ANY: bool>(
+    batch: &mut Batch<'_, F, A, L, ANY>,
     kernel: K,
     packets: K::Packets,
     first: usize,
@@ -105,8 +106,8 @@ pub(super) fn rays(left: &Left, first: usize, end: usize) -> impl Iterator<Item 
 }
 
 /// What packets of a batch share.
-struct Convoy<'a, 'b, K: Kernel, F, A, const ANY: bool> {
-    batch: &'a mut Batch<'b, F, A, ANY>,
+struct Convoy<'a, 'b, K: Kernel, F, A, L, const ANY: bool> {
+    batch: &'a mut Batch<'b, F, A, L, ANY>,
     kernel: K,
     packets: K::Packets,
     /// Packets still to be passed over.
@@ -118,7 +119,9 @@ struct Convoy<'a, 'b, K: Kernel, F, A, const ANY: bool> {
     active: u32,
 }
 
-impl<K: Kernel, F: HitFilter, A: Answers, const ANY: bool> Convoy<'_, '_, K, F, A, ANY> {
+impl<K: Kernel, F: HitFilter, A: Answers, L: Leaves, const ANY: bool>
+    Convoy<'_, '_, K, F, A, L, ANY>
+{
     /// Whether a packet is to be made of these rays.
     #[inline(always)]
     fn takes(&mut self, rays: &[crate::geometry::Ray; RAYS]) -> bool {
@@ -163,7 +166,7 @@ impl<K: Kernel, F: HitFilter, A: Answers, const ANY: bool> Convoy<'_, '_, K, F, 
         };
         packet.top = top as u32;
         for &reference in &packet.references[before..top] {
-            let place = hierarchy.place(Reference(reference));
+            let place = L::address(hierarchy, Reference(reference));
             prefetch(place);
             prefetch(place.wrapping_add(64));
         }
@@ -171,7 +174,8 @@ impl<K: Kernel, F: HitFilter, A: Answers, const ANY: bool> Convoy<'_, '_, K, F, 
 
     #[inline(always)]
     fn test(&self, packet: &mut Packet, leaf: Reference, active: u16) {
-        let block = self.batch.bvh.hierarchy.block(leaf);
+        let mut made = None;
+        let block = L::block(self.batch.bvh, leaf, NONE, &mut made);
         let mut touched = [Touched::default(); block::SIZE];
         let mut any = match active.count_ones() {
             ..=ALONE => self.one_by_one(packet, block, active, &mut touched),
@@ -184,7 +188,7 @@ impl<K: Kernel, F: HitFilter, A: Answers, const ANY: bool> Convoy<'_, '_, K, F, 
             let lane = any.trailing_zeros();
             any &= any - 1;
             let found = Found { leaf, lane, instance: NONE };
-            self.settle(packet, found, touched[lane as usize % block::SIZE]);
+            self.settle(packet, block, found, touched[lane as usize % block::SIZE]);
         }
         packet.shorten_hull(self.packets);
     }
@@ -212,9 +216,8 @@ impl<K: Kernel, F: HitFilter, A: Answers, const ANY: bool> Convoy<'_, '_, K, F, 
 
     /// Takes a triangle for those rays that hit it no later than what they have hit so far.
     #[inline(always)]
-    fn settle(&self, packet: &mut Packet, found: Found, touched: Touched) {
+    fn settle(&self, packet: &mut Packet, block: &Block, found: Found, touched: Touched) {
         let bvh = self.batch.bvh;
-        let block = bvh.hierarchy.block(found.leaf);
         let distances = self.packets.distances(packet, block, found.lane as usize);
         let sure = touched.inside & !touched.unsure;
         let (nearer, level) = (sure & distances.nearer, sure & distances.level);
@@ -224,7 +227,7 @@ impl<K: Kernel, F: HitFilter, A: Answers, const ANY: bool> Convoy<'_, '_, K, F, 
             self.packets.take::<ANY>(packet, &distances.t, nearer, found);
             bits(level).for_each(|i| self.consider(packet, i, found, distances.t[i]));
         }
-        bits(touched.unsure).for_each(|i| self.consider_with_care(packet, i, found));
+        bits(touched.unsure).for_each(|i| self.consider_with_care(packet, block, i, found));
     }
 
     #[inline(never)]
@@ -238,10 +241,10 @@ impl<K: Kernel, F: HitFilter, A: Answers, const ANY: bool> Convoy<'_, '_, K, F, 
 
     /// [`Self::consider`] at an edge, where exact products decide.
     #[inline(never)]
-    fn consider_with_care(&self, packet: &mut Packet, i: usize, found: Found) {
+    fn consider_with_care(&self, packet: &mut Packet, block: &Block, i: usize, found: Found) {
         let bvh = self.batch.bvh;
         let ray = &self.batch.rays[packet.first as usize + i];
-        if !packet.shears[i].is_inside(bvh.hierarchy.block(found.leaf), found.lane as usize) {
+        if !packet.shears[i].is_inside(block, found.lane as usize) {
             return;
         }
         if let Some(at) = triangle_distance(ray, &bvh.vertices(found).0) {

@@ -9,6 +9,7 @@ use super::answers::Answers;
 use super::convoy;
 use super::hierarchy::Hierarchy;
 use super::kernel::{Kernel, Task};
+use super::leaves::Leaves;
 use super::node::{Kind, Reference};
 use super::packet::RAYS;
 use super::slot::{self, Slot};
@@ -29,7 +30,7 @@ thread_local! {
     static SLOTS: RefCell<Option<slot::Slots>> = const { RefCell::new(None) };
 }
 
-impl<F: HitFilter, A: Answers, const ANY: bool> Task for Batch<'_, F, A, ANY> {
+impl<F: HitFilter, A: Answers, L: Leaves, const ANY: bool> Task for Batch<'_, F, A, L, ANY> {
     #[inline(always)]
     fn run<K: Kernel>(mut self, kernel: K) {
         // Taken out, so that a filter that asks the accelerator from inside a query gets its own.
@@ -107,8 +108,8 @@ fn bits(mut mask: u64) -> impl Iterator<Item = u32> {
 
 /// Traces rays one after the other, each to its end: for those that have no company.
 #[inline(always)]
-fn one_by_one<K: Kernel, F: HitFilter, A: Answers, const ANY: bool>(
-    batch: Batch<'_, F, A, ANY>,
+fn one_by_one<K: Kernel, F: HitFilter, A: Answers, L: Leaves, const ANY: bool>(
+    batch: Batch<'_, F, A, L, ANY>,
     kernel: K,
     slot: &mut Slot,
 ) {
@@ -137,15 +138,15 @@ fn one_by_one<K: Kernel, F: HitFilter, A: Answers, const ANY: bool>(
 }
 
 /// The state of a batch.
-struct Flight<'a, 'b, R, F, A, const ANY: bool> {
-    batch: &'a mut Batch<'b, F, A, ANY>,
+struct Flight<'a, 'b, R, F, A, L, const ANY: bool> {
+    batch: &'a mut Batch<'b, F, A, L, ANY>,
     slots: &'a mut [Slot; IN_FLIGHT],
     /// Places of the rays that have not begun.
     rays: R,
 }
 
-impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, const ANY: bool>
-    Flight<'_, '_, R, F, A, ANY>
+impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, L: Leaves, const ANY: bool>
+    Flight<'_, '_, R, F, A, L, ANY>
 {
     #[inline(always)]
     fn run<K: Kernel>(mut self, kernel: K) {
@@ -187,7 +188,7 @@ impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, const ANY: bool>
     #[inline(always)]
     fn advance(&mut self, i: u32, top: usize, waiting: &mut Waiting) {
         let next = self.slots[i as usize & (IN_FLIGHT - 1)].pop(top);
-        ask(&self.batch.bvh.hierarchy, next);
+        ask::<L>(&self.batch.bvh.hierarchy, next);
         waiting.push(i, next);
     }
 
@@ -203,7 +204,7 @@ impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, const ANY: bool>
         let follows = slot.pop(slot.top as usize);
         slot.top += u32::from(hit);
         slot.next = select_unpredictable(hit, leaf, follows);
-        ask(hierarchy, follows);
+        ask::<L>(hierarchy, follows);
         waiting.push(i, select_unpredictable(hit, Reference::new(Kind::Node, 0), follows));
         u64::from(hit) << i
     }
@@ -227,8 +228,8 @@ impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, const ANY: bool>
 
 /// Asks the memory for the two cache lines of a node or a leaf.
 #[inline(always)]
-fn ask(hierarchy: &Hierarchy, reference: Reference) {
-    let start = hierarchy.place(reference);
+fn ask<L: Leaves>(hierarchy: &Hierarchy, reference: Reference) {
+    let start = L::address(hierarchy, reference);
     prefetch(start);
     prefetch(start.wrapping_add(64));
 }

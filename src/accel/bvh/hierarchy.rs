@@ -6,9 +6,10 @@
 
 use super::backend_error;
 use super::block::{self, Block, Meshes, Numbers};
-use super::build::{self, Anything, BinaryNode, PrimitiveBox, Quality, Room, Triangles, build};
-use super::collapse::{WideNode, WideTree, collapse};
+use super::build::{self, Anything, BinaryNode, PrimitiveBox, Room, Triangles, build};
+use super::collapse::{WideTree, collapse};
 use super::node::{Kind, Node, Reference, UNIT, WIDTH};
+use crate::accel::{BuildOptions, TreeShape};
 use crate::error::Result;
 use crate::geometry::{Aabb, Geometry, Instance, TriangleMesh};
 use crate::math::{DAffine3, Vec3};
@@ -22,12 +23,21 @@ pub(super) struct Hierarchy {
     units: Arena<Unit>,
     /// How many of them are taken.
     used: usize,
+    /// Triangles of all trees in the order of the leaves, as their tree numbers them. Without blocks, each leaf has
+    /// [`block::SIZE`] places, and [`ABSENT`] where there is none.
+    triangles: Arena<u32>,
+    /// How many of those places are taken.
+    places: usize,
+    /// Whether leaves are made of their triangles when they are visited, instead of being kept as blocks.
+    pub(super) is_compact: bool,
     /// Over the meshes that stand in the world.
     pub(super) own: Tree,
     /// Over each object's meshes, in its own space.
     pub(super) objects: Vec<Tree>,
     /// Over the instances.
     pub(super) instances: Tree,
+    /// What the trees over triangles are made of.
+    pub(super) shape: TreeShape,
     /// Largest coordinate of both that stand in the world.
     pub(super) world_size: f32,
     /// Instances in the order of the leaves.
@@ -41,6 +51,17 @@ pub(super) struct Hierarchy {
 #[repr(C, align(128))]
 struct Unit([u8; UNIT]);
 
+/// In place of a triangle's number.
+const ABSENT: u32 = u32::MAX;
+
+/// How the leaves of a tree are kept.
+enum Leaves<'a> {
+    /// As blocks, made of their ranges of primitives, behind the inner children of their parent.
+    Blocks(&'a (dyn Fn(u32, u32) -> Block + Sync)),
+    /// By numbers, in the order of the tree; this is the first.
+    Elsewhere(Reference),
+}
+
 /// One tree in the arena.
 pub(super) struct Tree {
     /// `None` without primitives.
@@ -50,29 +71,21 @@ pub(super) struct Tree {
     pub(super) size: f32,
     /// The most references that a depth-first walk leaves for later.
     pub(super) pending: usize,
-    /// Triangles in the order of the leaves.
-    pub(super) order: Vec<u32>,
-    /// From those numbers to primitives.
+    /// From numbers of triangles to primitives.
     pub(super) numbers: Numbers,
 }
 
 impl Default for Tree {
     fn default() -> Self {
-        Self::new(None, Aabb::EMPTY, &WideTree::default(), Vec::new(), Numbers::new(&[]))
+        Self::new(None, Aabb::EMPTY, &WideTree::default(), Numbers::new(&[]))
     }
 }
 
 impl Tree {
-    fn new(
-        root: Option<Reference>,
-        bounds: Aabb,
-        wide: &WideTree,
-        order: Vec<u32>,
-        numbers: Numbers,
-    ) -> Self {
+    fn new(root: Option<Reference>, bounds: Aabb, wide: &WideTree, numbers: Numbers) -> Self {
         let size = bounds.min.abs().max(bounds.max.abs()).max_element();
         let size = if root.is_some() { size } else { 0.0 };
-        Self { root, bounds, size, pending: wide.pending, order, numbers }
+        Self { root, bounds, size, pending: wide.pending, numbers }
     }
 }
 
@@ -81,7 +94,7 @@ impl Hierarchy {
     ///
     /// # Errors
     /// When there are 2^30 triangles or instances or more, or not enough memory.
-    pub(super) fn build(geometry: &Geometry, quality: Quality) -> Result<Self> {
+    pub(super) fn build(geometry: &Geometry, options: &BuildOptions) -> Result<Self> {
         // References have 30 bits.
         let triangles = geometry.stored_triangles();
         let instances = geometry.instances.len();
@@ -93,15 +106,22 @@ impl Hierarchy {
         let memory = || backend_error("not enough memory for the hierarchy");
         let trees = geometry.objects.len() + 2;
         let units = 2 * triangles + instances + trees;
-        let mut all = Self { units: Arena::zeroed(units).ok_or_else(memory)?, ..Self::default() };
-        all.own = all.add_meshes(&geometry.meshes, quality)?;
+        let places = if options.is_compact { block::SIZE * triangles } else { triangles };
+        let mut all = Self {
+            units: Arena::zeroed(units).ok_or_else(memory)?,
+            triangles: Arena::zeroed(places).ok_or_else(memory)?,
+            is_compact: options.is_compact,
+            ..Self::default()
+        };
+        all.own = all.add_meshes(&geometry.meshes, options)?;
         for object in &geometry.objects {
-            let tree = all.add_meshes(&object.meshes, quality)?;
+            let tree = all.add_meshes(&object.meshes, options)?;
             all.objects.push(tree);
         }
-        all.add_instances(geometry, quality)?;
+        all.add_instances(geometry, options)?;
         all.world_size = all.own.size.max(all.instances.size);
         all.units.truncate(all.used);
+        all.triangles.truncate(all.places);
         Ok(all)
     }
 
@@ -119,8 +139,9 @@ impl Hierarchy {
 
     /// Bytes of all of it.
     pub(super) fn bytes(&self) -> usize {
-        let numbers = |tree: &Tree| tree.numbers.bytes() + size_of_val(&*tree.order);
+        let numbers = |tree: &Tree| tree.numbers.bytes();
         size_of_val(&*self.units)
+            + size_of_val(&*self.triangles)
             + size_of_val(&*self.order)
             + size_of_val(&*self.object_from_world)
             + size_of_val(&*self.objects)
@@ -128,9 +149,9 @@ impl Hierarchy {
             + self.objects.iter().map(numbers).sum::<usize>()
     }
 
-    /// Where the unit is that a reference to a node or a leaf names.
+    /// Where the unit is that a reference to a node or a block names.
     #[inline(always)]
-    pub(super) fn place(&self, reference: Reference) -> *const u8 {
+    pub(super) fn unit(&self, reference: Reference) -> *const u8 {
         // The kind falls off the upper end.
         const { assert!(UNIT == 4 * 32) };
         let offset = (reference.0 << 2) as usize * 32;
@@ -142,15 +163,44 @@ impl Hierarchy {
     pub(super) fn node(&self, reference: Reference) -> &Node {
         debug_assert!(reference.kind() == Kind::Node as usize);
         // SAFETY: references to nodes are made in `add_tree` only, where the nodes are.
-        unsafe { &*self.place(reference).cast() }
+        unsafe { &*self.unit(reference).cast() }
     }
 
-    /// The leaf that is referred to.
+    /// The block of the leaf that is referred to.
+    ///
+    /// # Safety
+    /// Only where blocks are kept: where the hierarchy is not compact.
     #[inline(always)]
-    pub(super) fn block(&self, reference: Reference) -> &Block {
-        debug_assert!(reference.kind() == Kind::Leaf as usize);
-        // SAFETY: references to leaves are made in `add_tree` only, where the leaves are.
-        unsafe { &*self.place(reference).cast() }
+    pub(super) unsafe fn block(&self, reference: Reference) -> &Block {
+        debug_assert!(!self.is_compact && reference.kind() == Kind::Leaf as usize);
+        // SAFETY: references to leaves are then made in `add_tree` only, where the blocks are.
+        unsafe { &*self.unit(reference).cast() }
+    }
+
+    /// The leaf that is referred to, in a tree over these meshes, where blocks are not kept.
+    pub(super) fn gather(
+        &self,
+        reference: Reference,
+        tree: &Tree,
+        meshes: &[TriangleMesh],
+    ) -> Block {
+        let first = block::SIZE * reference.number();
+        let places = self.triangles.get(first..first + block::SIZE).unwrap_or(&[]);
+        let count = places.iter().take_while(|&&triangle| triangle != ABSENT).count();
+        let meshes = Meshes::new(meshes, &tree.numbers);
+        Block::new(&meshes, &places[..count], first as u32)
+    }
+
+    /// The number in its tree of the triangle whose number is kept there; [`ABSENT`] if there is none.
+    #[inline(always)]
+    pub(super) fn triangle(&self, place: usize) -> u32 {
+        self.triangles.get(place).copied().unwrap_or(ABSENT)
+    }
+
+    /// Where that number is in memory.
+    #[inline(always)]
+    pub(super) fn triangle_address(&self, place: usize) -> *const u32 {
+        self.triangles.as_ptr().wrapping_add(place)
     }
 
     /// [`Self::node`], if it lies in the arena.
@@ -158,9 +208,21 @@ impl Hierarchy {
         (reference.number() < self.units.len()).then(|| self.node(reference))
     }
 
-    /// [`Self::block`], if it lies in the arena.
-    pub(super) fn checked_block(&self, reference: Reference) -> Option<&Block> {
-        (reference.number() < self.units.len()).then(|| self.block(reference))
+    /// The leaf that is referred to, kept or made, if it is there.
+    pub(super) fn checked_block(
+        &self,
+        reference: Reference,
+        tree: &Tree,
+        meshes: &[TriangleMesh],
+    ) -> Option<Block> {
+        if self.is_compact {
+            let is_there = block::SIZE * reference.number() < self.triangles.len();
+            is_there.then(|| self.gather(reference, tree, meshes))
+        } else {
+            let is_there = reference.number() < self.units.len();
+            // SAFETY: the hierarchy is not compact.
+            is_there.then(|| unsafe { *self.block(reference) })
+        }
     }
 
     /// The instance that is referred to.
@@ -179,22 +241,41 @@ impl Hierarchy {
     }
 
     /// A tree over the triangles of some meshes.
-    fn add_meshes(&mut self, meshes: &[TriangleMesh], quality: Quality) -> Result<Tree> {
+    fn add_meshes(&mut self, meshes: &[TriangleMesh], options: &BuildOptions) -> Result<Tree> {
         let boxes = build::boxes(meshes);
-        let meshes = Meshes::new(meshes);
+        let numbers = Numbers::new(meshes);
+        let meshes = Meshes::new(meshes, &numbers);
         let room = Room { primitives: block::SIZE, points: block::VERTICES };
         let leaves = Triangles { room, corners: |triangle| meshes.vertices(triangle) };
-        let tree = build(boxes, &leaves, quality);
+        let tree = build(boxes, &leaves, options.quality);
         let wide = collapse(&tree);
-        let order = &tree.order;
-        let leaf =
-            |start: u32, end: u32| Block::new(&meshes, &order[start as usize..end as usize], start);
-        let root = self.add_tree(&tree.nodes, &wide, Some(&leaf))?;
-        Ok(Tree::new(root, bounds(&tree.nodes), &wide, tree.order, meshes.into_numbers()))
+        let (order, first) = (&tree.order, self.places);
+        let root = if self.is_compact {
+            // A multiple of the size of leaves, as each takes so many places.
+            let leaves = Reference::new(Kind::Leaf, first / block::SIZE);
+            for (start, end) in wide.leaf_ranges(&tree.nodes) {
+                let (triangles, places) =
+                    (&order[start as usize..end as usize], &mut self.triangles[self.places..]);
+                let (taken, free) = places[..block::SIZE].split_at_mut(triangles.len());
+                taken.copy_from_slice(triangles);
+                free.fill(ABSENT);
+                self.places += block::SIZE;
+            }
+            self.add_tree(&tree.nodes, &wide, &Leaves::Elsewhere(leaves))?
+        } else {
+            self.triangles[first..first + order.len()].copy_from_slice(order);
+            self.places += order.len();
+            let block = |start: u32, end: u32| {
+                Block::new(&meshes, &order[start as usize..end as usize], first as u32 + start)
+            };
+            self.add_tree(&tree.nodes, &wide, &Leaves::Blocks(&block))?
+        };
+        self.shape.add(&wide.shape(&tree.nodes));
+        Ok(Tree::new(root, bounds(&tree.nodes), &wide, numbers))
     }
 
     /// The tree over the instances.
-    fn add_instances(&mut self, geometry: &Geometry, quality: Quality) -> Result<()> {
+    fn add_instances(&mut self, geometry: &Geometry, options: &BuildOptions) -> Result<()> {
         let inverse = |i: &Instance| i.world_from_object.to_f64().inverse();
         self.object_from_world = geometry.instances.iter().map(inverse).collect();
         let mut boxes = Vec::new();
@@ -214,23 +295,22 @@ impl Hierarchy {
                 boxes.push(PrimitiveBox::new(&bounds, id));
             }
         }
-        let tree = build(boxes, &Anything(1), quality);
+        let tree = build(boxes, &Anything(1), options.quality);
         let wide = collapse(&tree);
-        let root = self.add_tree(&tree.nodes, &wide, None::<&fn(u32, u32) -> Block>)?;
-        let children = wide.nodes.iter().flat_map(WideNode::children);
-        let leaves = children.filter_map(|&child| leaf_range(&tree.nodes[child as usize]));
-        self.order = leaves.map(|(start, _)| tree.order[start as usize]).collect();
-        self.instances = Tree::new(root, bounds(&tree.nodes), &wide, Vec::new(), Numbers::new(&[]));
+        let leaves = Leaves::Elsewhere(Reference::new(Kind::Instance, 0));
+        let root = self.add_tree(&tree.nodes, &wide, &leaves)?;
+        let ranges = wide.leaf_ranges(&tree.nodes);
+        self.order = ranges.map(|(start, _)| tree.order[start as usize]).collect();
+        self.instances = Tree::new(root, bounds(&tree.nodes), &wide, Numbers::new(&[]));
         Ok(())
     }
 
-    /// Stores a tree. Leaves are made by `leaf` from their range of primitives; without it they are instances, by
-    /// their number.
+    /// Stores a tree.
     fn add_tree(
         &mut self,
         tree: &[BinaryNode],
         wide: &WideTree,
-        leaf: Option<&(impl Fn(u32, u32) -> Block + Sync)>,
+        leaves: &Leaves<'_>,
     ) -> Result<Option<Reference>> {
         if wide.nodes.is_empty() {
             return Ok(None);
@@ -241,7 +321,10 @@ impl Hierarchy {
         let mut end = root + 1;
         for node in &wide.nodes {
             places.push(end);
-            end += node.inner().len() + if leaf.is_some() { usize::from(node.leaves()) } else { 0 };
+            end += match leaves {
+                Leaves::Blocks(_) => node.children().len(),
+                Leaves::Elsewhere(_) => node.inner().len(),
+            };
         }
         self.used = end;
         if end > Reference::NUMBERS.min(self.units.len()) {
@@ -254,8 +337,11 @@ impl Hierarchy {
                 *bounds = tree[child as usize].bounds();
             }
             let boxes = &boxes[..source.children().len()];
-            let instances = leaf.is_none().then_some(source.leaves_before as usize);
-            Node::new(boxes, source.inner().len(), places[i], instances)
+            let first_leaf = match leaves {
+                Leaves::Blocks(_) => Reference::new(Kind::Leaf, places[i] + source.inner().len()),
+                Leaves::Elsewhere(first) => Reference(first.0 + source.leaves_before),
+            };
+            Node::new(boxes, source.inner().len(), places[i], first_leaf)
         };
         let (of_root, mut rest) = self.units[root..end].split_at_mut(1);
         of_root[0] = bytemuck::must_cast(new_node(0));
@@ -278,23 +364,14 @@ impl Hierarchy {
                     units[place] = bytemuck::must_cast(new_node(child));
                     place += 1;
                 }
-                let Some(leaf) = leaf else { continue };
-                for &child in &source.children()[source.inner().len()..] {
-                    let Some((start, end)) = leaf_range(&tree[child as usize]) else { continue };
-                    units[place] = bytemuck::must_cast(leaf(start, end));
+                let Leaves::Blocks(block) = leaves else { continue };
+                for (start, end) in source.leaf_ranges(tree) {
+                    units[place] = bytemuck::must_cast(block(start, end));
                     place += 1;
                 }
             }
         });
         Ok(Some(Reference::new(Kind::Node, root)))
-    }
-}
-
-/// The range of primitives of a leaf.
-fn leaf_range(node: &BinaryNode) -> Option<(u32, u32)> {
-    match node.kind() {
-        build::Kind::Leaf { start, end } => Some((start, end)),
-        build::Kind::Inner(_) => None,
     }
 }
 
@@ -305,6 +382,7 @@ fn bounds(tree: &[BinaryNode]) -> Aabb {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::Quality;
     use crate::sampling::CounterRng;
 
     /// More triangles than one thread builds over alone.
@@ -316,14 +394,21 @@ mod tests {
         let triangles = (0..90_000).map(|i| [i, i + 1, i + 2]).collect();
         let meshes = vec![TriangleMesh::new(positions, triangles, false)];
         let geometry = Geometry { meshes, ..Geometry::default() };
-        for quality in [Quality::Fast, Quality::Default, Quality::High] {
+        let compact = (Quality::Default, true);
+        for (quality, is_compact) in
+            Quality::ALL.map(|(_, quality)| (quality, false)).into_iter().chain([compact])
+        {
+            let options = BuildOptions { quality, is_compact, ..BuildOptions::default() };
             let bytes = [1, 2, 3, 8].map(|threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
                 let hierarchy =
-                    pool.expect("threads").install(|| Hierarchy::build(&geometry, quality));
-                bytemuck::cast_slice::<_, u8>(&hierarchy.expect("it builds").units).to_vec()
+                    pool.expect("threads").install(|| Hierarchy::build(&geometry, &options));
+                let hierarchy = hierarchy.expect("it builds");
+                let units = bytemuck::cast_slice::<_, u8>(&hierarchy.units);
+                [units, bytemuck::cast_slice(&hierarchy.triangles)].concat()
             });
-            assert!(bytes[0].len() > 90_000 * 15);
+            let least = if is_compact { 4 } else { 15 };
+            assert!(bytes[0].len() > 90_000 * least);
             assert!(bytes.iter().all(|other| *other == bytes[0]), "{quality:?}");
         }
     }

@@ -15,6 +15,7 @@ mod cut;
 mod flight;
 mod hierarchy;
 mod kernel;
+mod leaves;
 mod node;
 mod packet;
 mod ray;
@@ -23,16 +24,16 @@ mod validate;
 mod walk;
 mod woop;
 
-pub use build::Quality;
 pub use kernel::Steps;
 pub use validate::TreeStatistics;
 
-use super::{Accelerator, BuildStats, HitFilter};
+use super::{Accelerator, BuildOptions, BuildStats, HitFilter};
 use crate::error::{Error, Result};
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
-use answers::{Blocked, FewHits, Hits, Ignored};
+use answers::{Answers, Blocked, FewHits, Hits, Ignored};
 use hierarchy::Hierarchy;
 use kernel::Count;
+use leaves::{Gathered, Kept, Leaves};
 use node::Reference;
 use slot::Found;
 use std::cell::Cell;
@@ -55,24 +56,28 @@ impl Bvh {
     /// # Errors
     /// When there are 2^30 triangles or more, not enough memory, or no threads.
     pub fn build(geometry: Arc<Geometry>, threads: usize) -> Result<Self> {
-        Self::with_quality(geometry, threads, Quality::Default)
+        Self::with_options(geometry, &BuildOptions { threads, ..BuildOptions::default() })
     }
 
-    /// [`Bvh::build`] with more or less work on the hierarchy.
+    /// [`Bvh::build`] with more or less work on the hierarchy, or more or less memory for it. The hits are the same.
     ///
     /// # Errors
     /// As there.
-    pub fn with_quality(geometry: Arc<Geometry>, threads: usize, quality: Quality) -> Result<Self> {
+    pub fn with_options(geometry: Arc<Geometry>, options: &BuildOptions) -> Result<Self> {
         let start = Instant::now();
         let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
+            .num_threads(options.threads)
             .build()
             .map_err(|error| backend_error(&error.to_string()))?;
-        let hierarchy = pool.install(|| Hierarchy::build(&geometry, quality))?;
+        let hierarchy = pool.install(|| Hierarchy::build(&geometry, options))?;
         if hierarchy.pending() + slot::SPARE > slot::ROOM {
             return Err(backend_error("the hierarchy is too deep"));
         }
-        let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: hierarchy.bytes() };
+        let stats = BuildStats {
+            seconds: start.elapsed().as_secs_f64(),
+            bytes: hierarchy.bytes(),
+            shape: Some(hierarchy.shape),
+        };
         let has_filters = geometry.has_filtered_meshes();
         Ok(Self { geometry, hierarchy, has_filters, stats })
     }
@@ -80,25 +85,50 @@ impl Bvh {
     /// What it takes to find the closest hits of `rays`, or if `any`, whether they hit anything.
     pub fn steps<F: HitFilter>(&self, rays: &[Ray], filter: &F, any: bool) -> Steps {
         let steps = Cell::new(Steps::default());
-        let (bvh, answers, steps) = (self, &mut Ignored, &steps);
-        if any {
-            kernel::dispatch(Count {
-                task: Batch::<_, _, true> { bvh, rays, filter, answers },
-                steps,
-            });
-        } else {
-            kernel::dispatch(Count {
-                task: Batch::<_, _, false> { bvh, rays, filter, answers },
-                steps,
-            });
+        match (any, self.hierarchy.is_compact) {
+            (false, false) => self.count::<_, Kept, false>(rays, filter, &steps),
+            (true, false) => self.count::<_, Kept, true>(rays, filter, &steps),
+            (false, true) => self.count::<_, Gathered, false>(rays, filter, &steps),
+            (true, true) => self.count::<_, Gathered, true>(rays, filter, &steps),
         }
         steps.get()
     }
 
-    /// Place of a triangle in the order of its tree.
+    fn count<F: HitFilter, L: Leaves, const ANY: bool>(
+        &self,
+        rays: &[Ray],
+        filter: &F,
+        steps: &Cell<Steps>,
+    ) {
+        let answers = &mut Ignored;
+        let task = Batch::<_, _, L, ANY>::new(self, rays, filter, answers);
+        kernel::dispatch(Count { task, steps });
+    }
+
+    /// Place of the number of a triangle in a leaf.
     #[inline(always)]
     fn place(&self, found: Found) -> usize {
-        self.hierarchy.block(found.leaf).first as usize + found.lane as usize
+        let lane = found.lane as usize;
+        match self.hierarchy.is_compact {
+            false => Kept::place(&self.hierarchy, found.leaf, lane),
+            true => Gathered::place(&self.hierarchy, found.leaf, lane),
+        }
+    }
+
+    /// Does what is asked about rays, for the way in which leaves are kept.
+    #[inline(always)]
+    fn run<F: HitFilter, A: Answers, const ANY: bool>(
+        &self,
+        rays: &[Ray],
+        filter: &F,
+        answers: &mut A,
+    ) {
+        match self.hierarchy.is_compact {
+            false => kernel::dispatch(Batch::<_, _, Kept, ANY>::new(self, rays, filter, answers)),
+            true => {
+                kernel::dispatch(Batch::<_, _, Gathered, ANY>::new(self, rays, filter, answers))
+            }
+        }
     }
 
     /// The id of a triangle in a leaf; a miss of none.
@@ -108,25 +138,24 @@ impl Bvh {
             return PrimitiveId::MISS;
         }
         let tree = self.hierarchy.tree_of(&self.geometry, found.instance);
-        tree.numbers.id(tree.order[self.place(found)], found.instance)
+        let triangle = self.hierarchy.triangle(self.place(found));
+        tree.numbers.id(triangle, found.instance)
     }
 }
 
 impl Accelerator for Bvh {
     fn closest<F: HitFilter>(&self, rays: &[Ray], filter: &F, hits: &mut [Hit]) {
         if rays.len() < flight::FEW {
-            let answers = &mut FewHits(hits);
-            kernel::dispatch(Batch::<_, _, false> { bvh: self, rays, filter, answers });
+            self.run::<_, _, false>(rays, filter, &mut FewHits(hits));
         } else {
             let answers = &mut Hits::new(hits);
-            kernel::dispatch(Batch::<_, _, false> { bvh: self, rays, filter, answers });
+            self.run::<_, _, false>(rays, filter, answers);
             answers.finish(self, rays);
         }
     }
 
     fn occluded<F: HitFilter>(&self, rays: &[Ray], filter: &F, blocked: &mut [bool]) {
-        let answers = &mut Blocked(blocked);
-        kernel::dispatch(Batch::<_, _, true> { bvh: self, rays, filter, answers });
+        self.run::<_, _, true>(rays, filter, &mut Blocked(blocked));
     }
 
     fn build_stats(&self) -> BuildStats {

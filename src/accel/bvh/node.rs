@@ -78,19 +78,15 @@ pub(super) struct Node {
 const _: () = assert!(size_of::<Node>() == UNIT);
 
 impl Node {
-    /// A node of one to sixteen children with these boxes, of which the first `inner` are nodes. They lie in the arena
-    /// from `place` on; the rest are leaves after them, or else the instances from number `instances` on.
+    /// A node of one to sixteen children with these boxes, of which the first `inner` are nodes, which lie in the arena
+    /// from `place` on. The others are leaves or instances from `first_leaf` on.
     pub(super) fn new(
         children: &[Aabb],
         inner: usize,
         place: usize,
-        instances: Option<usize>,
+        first_leaf: Reference,
     ) -> Self {
-        let (kind, number) = match instances {
-            None => (Kind::Leaf, place + inner),
-            Some(first) => (Kind::Instance, first),
-        };
-        let first_leaf = Reference::new(kind, number).0.wrapping_sub(inner as u32);
+        let first_leaf = first_leaf.0.wrapping_sub(inner as u32);
         let all = children.iter().fold(Aabb::EMPTY, |all, b| all.union(*b));
         let [x, y, z] = [0, 1, 2].map(|axis| exponent(all.min[axis], all.max[axis]));
         let last = f32::from_le_bytes([x, y, z, children.len() as u8]);
@@ -173,7 +169,7 @@ mod tests {
                     Aabb { min: p.min(q), max: p.max(q) }
                 })
                 .collect();
-            let node = Node::new(&boxes, n / 2, 100, None);
+            let node = Node::new(&boxes, n / 2, 100, Reference::new(Kind::Leaf, 300));
             assert_eq!(
                 (node.present.count_ones(), node.inner.count_ones()),
                 (n as u32, n as u32 / 2)
@@ -191,7 +187,7 @@ mod tests {
                     assert!(plane(WIDTH) >= upper && upper > plane(WIDTH) - 1.001 * step);
                 }
                 let (kind, place) =
-                    if i < n / 2 { (Kind::Node, 100 + i) } else { (Kind::Leaf, 100 + i) };
+                    if i < n / 2 { (Kind::Node, 100 + i) } else { (Kind::Leaf, 300 + i - n / 2) };
                 assert_eq!(node.child(i), Reference::new(kind, place));
             }
         }

@@ -5,6 +5,7 @@
 use super::hierarchy::{Hierarchy, Tree};
 use super::node::{Kind, Node, Reference, WIDTH};
 use super::{Bvh, backend_error, block};
+use crate::accel::TreeShape;
 use crate::error::Result;
 use crate::geometry::{Aabb, TriangleMesh};
 use crate::math::{DVec3, Vec3};
@@ -12,17 +13,11 @@ use crate::math::{DVec3, Vec3};
 /// What a hierarchy is made of: the trees over triangles together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TreeStatistics {
-    /// Nodes of up to sixteen children.
-    pub nodes: usize,
-    /// Leaves of up to eight triangles.
-    pub leaves: usize,
+    /// Nodes of up to sixteen children, leaves of up to eight triangles. The cost is that of the boxes as they are
+    /// stored, a little larger than those that [`BuildStats::shape`](crate::accel::BuildStats) is about.
+    pub shape: TreeShape,
     /// Triangles in leaves.
     pub triangles: usize,
-    /// Longest way from a root to a node, in nodes.
-    pub depth: usize,
-    /// Steps that a random ray through the box of everything is expected to take: the surface of all nodes and leaves
-    /// of a tree over that of its root, of the costliest tree.
-    pub sah_cost: f64,
     /// Bytes of everything ([`BuildStats::bytes`](crate::accel::BuildStats)) over the triangles in leaves.
     pub bytes_per_triangle: f64,
 }
@@ -41,13 +36,10 @@ impl Bvh {
         for (meshes, tree) in std::iter::once(&geometry.meshes).chain(objects).zip(trees) {
             let mut walk = Walk::new(&self.hierarchy, tree, Some(meshes));
             let statistics = walk.run()?;
-            all.nodes += statistics.nodes;
-            all.leaves += statistics.leaves;
+            all.shape.add(&statistics.shape);
             all.triangles += statistics.triangles;
-            all.depth = all.depth.max(statistics.depth);
-            all.sah_cost = all.sah_cost.max(statistics.sah_cost);
         }
-        let seen = Walk::new(&self.hierarchy, &self.hierarchy.instances, None).run()?.leaves;
+        let seen = Walk::new(&self.hierarchy, &self.hierarchy.instances, None).run()?.shape.leaves;
         ensure(seen == self.hierarchy.instance_count(), "an instance is missing")?;
         all.bytes_per_triangle = self.stats.bytes as f64 / all.triangles.max(1) as f64;
         Ok(all)
@@ -86,8 +78,8 @@ impl<'a> Walk<'a> {
                 (NODE, _) => {
                     let node = self.hierarchy.checked_node(reference);
                     let node = node.ok_or_else(|| backend_error("a node is out of bounds"))?;
-                    statistics.nodes += 1;
-                    statistics.depth = statistics.depth.max(depth);
+                    statistics.shape.nodes += 1;
+                    statistics.shape.depth = statistics.shape.depth.max(depth);
                     for i in (0..WIDTH).filter(|i| node.present >> i & 1 != 0) {
                         let child = child_bounds(node, i);
                         // What is in all boxes on the way.
@@ -97,11 +89,11 @@ impl<'a> Walk<'a> {
                     }
                 }
                 (LEAF, Some(meshes)) => {
-                    statistics.leaves += 1;
+                    statistics.shape.leaves += 1;
                     statistics.triangles += self.leaf(reference, &bounds, meshes)?;
                 }
                 (INSTANCE, None) => {
-                    statistics.leaves += 1;
+                    statistics.shape.leaves += 1;
                     let is_there = self.hierarchy.instance(reference).is_some();
                     ensure(is_there, "an instance is out of bounds")?;
                 }
@@ -114,7 +106,7 @@ impl<'a> Walk<'a> {
                 ensure(count == u8::from(is_finite), "a triangle is not in exactly one leaf")?;
             }
         }
-        statistics.sah_cost = surface / half_area(&root_box).max(f64::MIN_POSITIVE);
+        statistics.shape.sah_cost = surface / half_area(&root_box).max(f64::MIN_POSITIVE);
         Ok(statistics)
     }
 
@@ -125,15 +117,14 @@ impl<'a> Walk<'a> {
         bounds: &Aabb,
         meshes: &[TriangleMesh],
     ) -> Result<usize> {
-        let block = self.hierarchy.checked_block(reference);
+        let block = self.hierarchy.checked_block(reference, self.tree, meshes);
         let block = block.ok_or_else(|| backend_error("a leaf is out of bounds"))?;
         let mut count = 0;
         for lane in 0..block::SIZE {
             if !block.has(lane) {
                 continue;
             }
-            let triangle = self.tree.order.get(block.first as usize + count).copied();
-            let triangle = triangle.ok_or_else(|| backend_error("a triangle is out of bounds"))?;
+            let triangle = self.hierarchy.triangle(block.first as usize + lane);
             count += 1;
             let id = self.tree.numbers.id(triangle, 0);
             let seen = self.seen[id.geometry as usize].get_mut(id.primitive as usize);

@@ -6,6 +6,7 @@
 use super::Bvh;
 use super::block::SIZE;
 use super::kernel::{Distances, Inside, Kernel};
+use super::leaves::Leaves;
 use super::node::Reference;
 use super::slot::{Found, Slot};
 use crate::accel::{HitFilter, resolve};
@@ -13,16 +14,22 @@ use crate::geometry::{NONE, Ray, triangle_distance, within_box};
 use crate::math::Vec3;
 use crate::os::prefetch;
 use std::hint::select_unpredictable;
+use std::marker::PhantomData;
 
-/// A batch of queries. `ANY`: the first hit is enough.
-pub(super) struct Batch<'a, F, A, const ANY: bool> {
+/// A batch of queries, of a hierarchy whose leaves are read as by `L`. `ANY`: the first hit is enough.
+pub(super) struct Batch<'a, F, A, L, const ANY: bool> {
     pub(super) bvh: &'a Bvh,
     pub(super) rays: &'a [Ray],
     pub(super) filter: &'a F,
     pub(super) answers: &'a mut A,
+    leaves: PhantomData<L>,
 }
 
-impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
+impl<'a, F: HitFilter, A, L: Leaves, const ANY: bool> Batch<'a, F, A, L, ANY> {
+    pub(super) fn new(bvh: &'a Bvh, rays: &'a [Ray], filter: &'a F, answers: &'a mut A) -> Self {
+        Self { bvh, rays, filter, answers, leaves: PhantomData }
+    }
+
     /// Opens the node that is next; returns the height of the stack.
     #[inline(always)]
     pub(super) fn open<K: Kernel>(&self, kernel: K, slot: &mut Slot) -> usize {
@@ -36,7 +43,9 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
     /// Tests the edges of the leaf that is next; whether the ray is inside those of any triangle.
     #[inline(always)]
     pub(super) fn test<K: Kernel>(&self, kernel: K, slot: &mut Slot) -> bool {
-        slot.inside = kernel.inside(&slot.shear, self.bvh.hierarchy.block(slot.next));
+        let mut made = None;
+        let block = L::block(self.bvh, slot.next, slot.instance, &mut made);
+        slot.inside = kernel.inside(&slot.shear, block);
         slot.inside.inside != 0
     }
 
@@ -47,7 +56,9 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
         let Inside { inside, unsure } = slot.inside;
         let top = slot.top as usize;
         let is_better = if slot.instance == NONE && unsure == 0 {
-            let Distances { t, within } = kernel.distances(slot, bvh.hierarchy.block(slot.next));
+            let mut made = None;
+            let block = L::block(bvh, slot.next, NONE, &mut made);
+            let Distances { t, within } = kernel.distances(slot, block);
             let nearer = inside & within;
             let lane = nearer.trailing_zeros() & (SIZE as u32 - 1);
             let distance = t[lane as usize];
@@ -61,7 +72,8 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
                 slot.best = found.or(slot.best, is_better);
                 if !ANY {
                     // Its number will be asked for when the ray is done.
-                    prefetch(bvh.hierarchy.own.order.as_ptr().wrapping_add(bvh.place(found)));
+                    let place = L::place(&bvh.hierarchy, found.leaf, lane as usize);
+                    prefetch(bvh.hierarchy.triangle_address(place));
                 }
                 is_better
             } else {
@@ -122,7 +134,8 @@ impl<F: HitFilter, A, const ANY: bool> Batch<'_, F, A, ANY> {
     #[inline(never)]
     fn consider_with_care(&self, slot: &mut Slot, inside: u32, unsure: u32) -> bool {
         let (bvh, rays) = (self.bvh, self.rays);
-        let block = bvh.hierarchy.block(slot.next);
+        let mut made = None;
+        let block = L::block(bvh, slot.next, slot.instance, &mut made);
         let mut t = [0.0; SIZE];
         let mut nearer = 0;
         for lane in (0..SIZE).filter(|lane| inside >> lane & 1 != 0) {

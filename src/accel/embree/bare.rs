@@ -38,7 +38,8 @@ impl BareEmbree {
         let start = Instant::now();
         let device = Device::new(threads, isa)?;
         let scene = EmbreeScene::build(&device, &geometry, variant, false)?;
-        let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: device.bytes() };
+        let seconds = start.elapsed().as_secs_f64();
+        let stats = BuildStats { seconds, bytes: device.bytes(), shape: None };
         Ok(Self { scene, _device: device, geometry, stats })
     }
 

@@ -28,7 +28,7 @@ mod sys {
     include!(concat!(env!("OUT_DIR"), "/embree_bindings.rs"));
 }
 
-use super::{Accelerator, BuildStats, HitFilter};
+use super::{Accelerator, BuildOptions, BuildStats, HitFilter};
 use crate::error::Result;
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use crate::os::Isa;
@@ -63,10 +63,20 @@ impl EmbreeAccelerator {
     /// # Errors
     /// Embree's own, in its words: out of memory, unsupported CPU, invalid geometry.
     pub fn build(geometry: Arc<Geometry>, threads: usize) -> Result<Self> {
+        Self::with_options(geometry, &BuildOptions { threads, ..BuildOptions::default() })
+    }
+
+    /// [`EmbreeAccelerator::build`] with more or less work on the hierarchy, or less memory for it.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_options(geometry: Arc<Geometry>, options: &BuildOptions) -> Result<Self> {
         let start = Instant::now();
-        let device = Device::new(threads, Isa::detect())?;
-        let scene = EmbreeScene::build(&device, &geometry, EmbreeVariant::PRODUCTION, true)?;
-        let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: device.bytes() };
+        let device = Device::new(options.threads, Isa::detect())?;
+        let variant = EmbreeVariant::production(options);
+        let scene = EmbreeScene::build(&device, &geometry, variant, true)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let stats = BuildStats { seconds, bytes: device.bytes(), shape: None };
         Ok(Self { scene, device, geometry, stats })
     }
 

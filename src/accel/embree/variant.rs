@@ -1,41 +1,50 @@
 //! The choices that Embree leaves to its user: how a scene is built, and by which call rays are traced.
 
 use super::sys;
+use crate::accel::{BuildOptions, Quality};
 use std::ffi::c_int;
 
 /// How Embree builds and traverses a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EmbreeVariant {
-    /// With spatial splits (quality "high") or without ("medium", the default).
-    pub high_quality: bool,
-    /// Watertight and conservative. Embree then silently builds at medium quality.
+    /// High is with spatial splits, fast is by Morton codes.
+    pub quality: Quality,
+    /// Watertight and conservative. Embree then silently builds no better than at its default quality.
     pub robust: bool,
+    /// Without copies of the vertices.
+    pub is_compact: bool,
 }
 
 impl EmbreeVariant {
     /// What renders use.
-    pub const PRODUCTION: Self = Self { high_quality: false, robust: true };
+    pub const PRODUCTION: Self =
+        Self { quality: Quality::Default, robust: true, is_compact: false };
 
     /// Every variant that is a different scene, with its name.
     pub const ALL: [(&'static str, Self); 3] = [
         ("medium robust", Self::PRODUCTION),
-        ("medium fast", Self { high_quality: false, robust: false }),
-        ("high fast", Self { high_quality: true, robust: false }),
+        ("medium fast", Self { robust: false, ..Self::PRODUCTION }),
+        ("high fast", Self { quality: Quality::High, robust: false, ..Self::PRODUCTION }),
     ];
 
+    /// What renders use, as they want it built.
+    pub fn production(options: &BuildOptions) -> Self {
+        Self { quality: options.quality, is_compact: options.is_compact, ..Self::PRODUCTION }
+    }
+
     pub(super) fn flags(self) -> sys::RTCSceneFlags {
-        if self.robust {
-            sys::RTCSceneFlags::RTC_SCENE_FLAG_ROBUST
-        } else {
-            sys::RTCSceneFlags::RTC_SCENE_FLAG_NONE
-        }
+        let none = sys::RTCSceneFlags::RTC_SCENE_FLAG_NONE;
+        let robust = if self.robust { sys::RTCSceneFlags::RTC_SCENE_FLAG_ROBUST } else { none };
+        let compact =
+            if self.is_compact { sys::RTCSceneFlags::RTC_SCENE_FLAG_COMPACT } else { none };
+        robust | compact
     }
 
     pub(super) fn quality(self) -> sys::RTCBuildQuality {
-        if self.high_quality {
-            sys::RTCBuildQuality::RTC_BUILD_QUALITY_HIGH
-        } else {
-            sys::RTCBuildQuality::RTC_BUILD_QUALITY_MEDIUM
+        match self.quality {
+            Quality::Fast => sys::RTCBuildQuality::RTC_BUILD_QUALITY_LOW,
+            Quality::Default => sys::RTCBuildQuality::RTC_BUILD_QUALITY_MEDIUM,
+            Quality::High => sys::RTCBuildQuality::RTC_BUILD_QUALITY_HIGH,
         }
     }
 }

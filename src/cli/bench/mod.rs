@@ -103,6 +103,7 @@ fn settings(args: &Bench) -> Result<Settings> {
         repetitions: args.repetitions.map(|n| n as usize),
         time: args.time,
         all_calls: args.all_calls,
+        build: args.build.options(0),
     })
 }
 

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// How to build a structure.
 pub(super) struct Recipe<'g> {
     pub(super) backend: &'static str,
-    pub(super) variant: &'static str,
+    pub(super) variant: String,
     pub(super) build: Box<dyn Fn() -> Result<Box<dyn Structure>> + 'g>,
 }
 
@@ -32,7 +32,7 @@ const MOST_ROUNDS: usize = 11;
 /// A structure that was built, several times.
 pub(super) struct Built {
     backend: &'static str,
-    variant: &'static str,
+    variant: String,
     /// The last one.
     pub(super) structure: Box<dyn Structure>,
     /// What each took.
@@ -63,7 +63,7 @@ pub(super) fn build_all(
         }
     }
     let built = |(recipe, (structure, seconds)): (&Recipe<'_>, (Option<_>, Vec<f64>))| {
-        let Recipe { backend, variant, .. } = *recipe;
+        let (backend, variant) = (recipe.backend, recipe.variant.clone());
         Some(Built { backend, variant, structure: structure?, seconds })
     };
     Ok(recipes.iter().zip(slots).filter_map(built).collect())
@@ -73,11 +73,11 @@ impl Built {
     /// What there is to tell of it; `triangles` are those stored, `threads` those that built.
     pub(super) fn tell(&self, scene: &str, triangles: usize, threads: usize) -> Option<Build> {
         let seconds = Spread::of(&self.seconds)?;
-        let bytes = self.structure.stats().bytes;
+        let BuildStats { bytes, shape, .. } = self.structure.stats();
         Some(Build {
             scene: scene.to_owned(),
             backend: self.backend,
-            variant: self.variant,
+            variant: self.variant.clone(),
             threads,
             seconds: seconds.median,
             seconds_min: seconds.min,
@@ -85,6 +85,10 @@ impl Built {
             repetitions: self.seconds.len(),
             bytes,
             bytes_per_triangle: bytes as f64 / triangles as f64,
+            nodes: shape.map(|shape| shape.nodes),
+            leaves: shape.map(|shape| shape.leaves),
+            depth: shape.map(|shape| shape.depth),
+            sah_cost: shape.map(|shape| shape.sah_cost),
         })
     }
 }

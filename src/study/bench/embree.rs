@@ -25,7 +25,7 @@ pub(super) fn recipes(
 ) -> impl Iterator<Item = Recipe<'_>> {
     EmbreeVariant::ALL.into_iter().map(move |(name, variant)| Recipe {
         backend: "embree",
-        variant: name,
+        variant: name.to_owned(),
         build: Box::new(move || {
             let embree = BareEmbree::build(geometry.clone(), threads, variant, isa)?;
             Ok(Box::new(Variant { name, variant, isa, embree }))
@@ -40,7 +40,7 @@ impl Structure for Variant {
 
     /// A ray at a time, and every call for several.
     fn contestants(&self) -> Vec<Contestant<'_>> {
-        let is_production = self.variant == EmbreeVariant::PRODUCTION;
+        let is_production = self.variant.robust;
         let single = if is_production { Role::Baseline } else { Role::Rival };
         let several = EmbreeCall::for_several().into_iter().map(|call| (call, Role::Heat));
         std::iter::once((EmbreeCall::Single, single))

@@ -86,7 +86,7 @@ mod hierarchy {
     use super::super::course::BATCH;
     use super::InHouse;
     use crate::accel::bvh::Bvh;
-    use crate::accel::{Accelerator, BuildStats};
+    use crate::accel::{Accelerator, BuildOptions, BuildStats, Quality};
     use crate::geometry::Geometry;
     use crate::os::Isa;
     use std::sync::Arc;
@@ -97,16 +97,19 @@ mod hierarchy {
     }
 
     /// How to build it, for instructions up to those of `isa`.
-    pub(in super::super) fn recipe(
-        geometry: &Arc<Geometry>,
-        threads: usize,
+    pub(in super::super) fn recipe<'g>(
+        geometry: &'g Arc<Geometry>,
+        options: &BuildOptions,
         isa: Isa,
-    ) -> Recipe<'_> {
+    ) -> Recipe<'g> {
+        let options = *options;
+        let of_quality = |(_, quality): &&(_, Quality)| *quality == options.quality;
+        let name = Quality::ALL.iter().find(of_quality).map_or("", |(name, _)| name);
         Recipe {
             backend: "bvh",
-            variant: "default",
+            variant: if options.is_compact { format!("{name} compact") } else { name.to_string() },
             build: Box::new(move || {
-                let bvh = Bvh::build(geometry.clone(), threads)?;
+                let bvh = Bvh::with_options(geometry.clone(), &options)?;
                 Ok(Box::new(InHouseBvh { bvh, isa }))
             }),
         }

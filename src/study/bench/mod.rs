@@ -36,6 +36,7 @@ pub use result::{
 };
 pub use statistics::{Ratio, Spread};
 
+use crate::accel::BuildOptions;
 use crate::error::Result;
 use crate::geometry::{Geometry, Ray};
 use crate::os::Isa;
@@ -64,6 +65,9 @@ pub struct Settings {
     pub time: Duration,
     /// Whether all of Embree's calls race, without heats.
     pub all_calls: bool,
+    /// How the in-house BVH is built, by as many threads as above. Embree's variants are what they are: compact, its
+    /// packets of 16 may loop for ever.
+    pub build: BuildOptions,
 }
 
 /// Is told which step is being done, and how much of it is done, from 0 to 1.
@@ -84,7 +88,8 @@ pub fn bench(
     settings.isa.limit();
     let geometry = &world.geometry;
     let threads = settings.threads.iter().copied().max().unwrap_or(1);
-    let built = build_all(&recipes(geometry, threads, settings.isa), settings.time, tell)?;
+    let options = BuildOptions { threads, ..settings.build };
+    let built = build_all(&recipes(geometry, &options, settings.isa), settings.time, tell)?;
     let mut contestants: Vec<_> = built.iter().flat_map(|b| b.structure.contestants()).collect();
     if settings.all_calls {
         let must = contestants.iter_mut().filter(|contestant| contestant.role == Role::Heat);
@@ -109,11 +114,11 @@ pub fn bench(
     Ok(findings)
 }
 
-fn recipes(geometry: &Arc<Geometry>, threads: usize, isa: Isa) -> Vec<Recipe<'_>> {
+fn recipes<'g>(geometry: &'g Arc<Geometry>, options: &BuildOptions, isa: Isa) -> Vec<Recipe<'g>> {
     let mut recipes = Vec::new();
     #[cfg(feature = "embree")]
-    recipes.extend(embree::recipes(geometry, threads, isa));
+    recipes.extend(embree::recipes(geometry, options.threads, isa));
     #[cfg(feature = "bvh")]
-    recipes.extend([in_house::recipe(geometry, threads, isa)]);
+    recipes.extend([in_house::recipe(geometry, options, isa)]);
     recipes
 }

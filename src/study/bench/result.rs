@@ -103,7 +103,7 @@ pub struct Build {
     /// "embree" or "bvh".
     pub backend: &'static str,
     /// Quality and kind.
-    pub variant: &'static str,
+    pub variant: String,
     /// Threads that worked on it.
     pub threads: usize,
     /// Median.
@@ -118,6 +118,14 @@ pub struct Build {
     pub bytes: usize,
     /// The same for each stored triangle.
     pub bytes_per_triangle: f64,
+    /// Inner nodes of the trees over triangles; of the in-house BVH only, as all that follows.
+    pub nodes: Option<usize>,
+    /// Their leaves.
+    pub leaves: Option<usize>,
+    /// Longest way from a root to an inner node, in nodes.
+    pub depth: Option<usize>,
+    /// Nodes and leaves that a random ray is expected to visit, by the surface area heuristic.
+    pub sah_cost: Option<f64>,
 }
 
 /// A call of Embree's that had to qualify, on one thread.

@@ -2,6 +2,8 @@
 
 use super::scenes::Holes;
 use glint::accel::Accelerator;
+#[cfg(feature = "bvh")]
+use glint::accel::{BuildOptions, Quality};
 use glint::geometry::{Geometry, Hit, Ray};
 use std::sync::Arc;
 
@@ -39,6 +41,8 @@ pub(crate) struct Backends {
     embree: glint::accel::embree::EmbreeAccelerator,
     #[cfg(feature = "bvh")]
     bvh: glint::accel::bvh::Bvh,
+    #[cfg(feature = "bvh")]
+    compact: glint::accel::bvh::Bvh,
 }
 
 impl Backends {
@@ -49,6 +53,11 @@ impl Backends {
                 .expect("it builds"),
             #[cfg(feature = "bvh")]
             bvh: glint::accel::bvh::Bvh::build(geometry.clone(), 2).expect("it builds"),
+            #[cfg(feature = "bvh")]
+            compact: {
+                let options = BuildOptions { threads: 2, quality: Quality::Fast, is_compact: true };
+                glint::accel::bvh::Bvh::with_options(geometry.clone(), &options).expect("it builds")
+            },
         }
     }
 
@@ -68,6 +77,8 @@ impl Backends {
                     answers.push(Answers::of((&name, true), &self.bvh, rays, slice));
                 }
             }
+            let name = "bvh compact, built fast";
+            answers.push(Answers::of((name, true), &self.compact, rays, rays.len().max(1)));
         }
         answers
     }

@@ -22,6 +22,7 @@ pub(super) use points::{Anything, Leaves, Room, Triangles};
 pub(super) use primitive::PrimitiveBox;
 pub(super) use triangles::boxes;
 
+use crate::accel::Quality;
 use bins::Bins;
 use node::Nodes;
 use primitive::{Bounds, Centers};
@@ -29,18 +30,6 @@ use range::Range;
 use rayon::prelude::*;
 use reinsert::Reinsertion;
 use sweep::{MOST, Sweep};
-
-/// How much a hierarchy may cost to build, against what it saves later.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Quality {
-    /// Built in the shortest time.
-    Fast,
-    /// Best for most renders.
-    #[default]
-    Default,
-    /// Traversed in the shortest time.
-    High,
-}
 
 /// What a quality means, and what is asked of leaves.
 #[derive(Clone, Copy, Debug)]
