@@ -52,17 +52,18 @@ impl Drop for Program {
 #[test]
 fn while_loading_it_ends_at_once() {
     let bench = Bench::new();
-    // A few seconds of work, so that the signal comes in time on a busy machine too.
-    let vertices = (0..1_000_000).map(|i| format!("v {} {} {}\n", i % 1000, i / 1000, i % 7));
-    let faces = (0..999_000).map(|i| format!("f {} {} {}\n", i + 1, i + 2, i + 1001));
-    bench.file("model.obj", vertices.chain(faces).collect::<String>());
+    // Its materials are in a pipe into which nobody writes: it loads until it is told to stop.
+    let pipe = Command::new("mkfifo").arg(bench.path("model.mtl")).status();
+    assert!(pipe.expect("mkfifo").success());
+    bench.file("model.obj", format!("mtllib model.mtl\n{TRIANGLE}"));
     let mut program = Program::start(&bench);
     while !program.handles_signals() {
         std::thread::sleep(Duration::from_millis(1));
     }
     program.interrupt();
     assert_eq!(program.code(), Some(130));
-    assert_eq!(bench.names(), ["model.obj"]);
+    // The pipe and the model, and nothing half-written.
+    assert_eq!(bench.names(), ["model.mtl", "model.obj"]);
 }
 
 #[test]

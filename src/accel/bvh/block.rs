@@ -5,6 +5,7 @@
 use super::node::UNIT;
 use crate::geometry::{PrimitiveId, TriangleMesh};
 use crate::math::Vec3;
+use crate::os::prefetch;
 use bytemuck::{Pod, Zeroable};
 
 /// Triangles a block, and so the most a leaf can have.
@@ -38,7 +39,8 @@ impl Block {
         let mut block = Self { first, ..Self::zeroed() };
         let mut known = [[0; 3]; VERTICES];
         let mut count = 0;
-        for (corners, &triangle) in block.corners.iter_mut().zip(triangles) {
+        let mut all = [0; SIZE];
+        for (corners, &triangle) in all.iter_mut().zip(triangles) {
             for (shift, corner) in [0, 4, 8].into_iter().zip(meshes.vertices(triangle)) {
                 // The same vertex has the same bits.
                 let bits = corner.to_array().map(f32::to_bits);
@@ -46,16 +48,22 @@ impl Block {
                 if number == count {
                     known[count] = bits;
                     count += 1;
-                    for axis in 0..3 {
-                        block.positions[place(axis, number)] = corner[axis];
-                    }
+                    block.put(number, corner);
                 }
                 *corners |= (number << shift) as i16;
             }
         }
-        let absent = block.corners[0] | i16::MIN;
-        block.corners[triangles.len()..].fill(absent);
-        block
+        let absent = all[0] | i16::MIN;
+        all[triangles.len()..].fill(absent);
+        Self { corners: all, ..block }
+    }
+
+    /// Makes it the vertex of that number.
+    #[inline(always)]
+    pub(super) fn put(&mut self, vertex: usize, position: Vec3) {
+        for axis in 0..3 {
+            self.positions[place(axis, vertex)] = position[axis];
+        }
     }
 
     /// Whether there is a triangle in that lane.
@@ -157,5 +165,30 @@ impl<'a> Meshes<'a> {
     pub(super) fn vertices(&self, triangle: u32) -> [Vec3; 3] {
         let (mesh, primitive) = self.numbers.locate(triangle);
         self.meshes[mesh].vertices(primitive)
+    }
+
+    /// A corner of a triangle.
+    #[inline(always)]
+    pub(super) fn vertex(&self, triangle: u32, corner: usize) -> Vec3 {
+        let (mesh, primitive) = self.numbers.locate(triangle);
+        let mesh = &self.meshes[mesh];
+        let number = mesh.triangles.as_flattened()[3 * primitive as usize + corner];
+        Vec3::from_array(mesh.positions[number as usize])
+    }
+
+    /// Asks the memory for the numbers of a triangle's vertices.
+    #[inline(always)]
+    pub(super) fn fetch_numbers(&self, triangle: u32) {
+        let (mesh, primitive) = self.numbers.locate(triangle);
+        prefetch(self.meshes[mesh].triangles.as_ptr().wrapping_add(primitive as usize));
+    }
+
+    /// Asks the memory for a corner of a triangle, whose numbers have arrived.
+    #[inline(always)]
+    pub(super) fn fetch_vertex(&self, triangle: u32, corner: usize) {
+        let (mesh, primitive) = self.numbers.locate(triangle);
+        let mesh = &self.meshes[mesh];
+        let number = mesh.triangles.as_flattened()[3 * primitive as usize + corner];
+        prefetch(mesh.positions.as_ptr().wrapping_add(number as usize));
     }
 }

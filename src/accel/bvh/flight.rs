@@ -166,7 +166,11 @@ impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, L: Leaves, const ANY: bo
             }
             // Test the edges of a leaf each: most are missed, and their rays go on at once.
             let mut hit = 0;
-            for i in bits(waiting.take_leaves()) {
+            let leaves = waiting.take_leaves();
+            for step in 0..L::STEPS {
+                bits(leaves).for_each(|i| self.fetch(i, step));
+            }
+            for i in bits(leaves) {
                 hit |= self.test(kernel, i, &mut waiting);
             }
             // Measure the distances of the others.
@@ -190,6 +194,13 @@ impl<R: Iterator<Item = u32>, F: HitFilter, A: Answers, L: Leaves, const ANY: bo
         let next = self.slots[i as usize & (IN_FLIGHT - 1)].pop(top);
         ask::<L>(&self.batch.bvh.hierarchy, next);
         waiting.push(i, next);
+    }
+
+    /// Asks the memory for what a leaf is made of.
+    #[inline(always)]
+    fn fetch(&self, i: u32, step: usize) {
+        let slot = &self.slots[i as usize & (IN_FLIGHT - 1)];
+        L::fetch(self.batch.bvh, slot.next, slot.instance, step);
     }
 
     /// Tests a leaf. If the ray is inside of any triangle's edges, returns the slot's bit; otherwise advances. Which it is

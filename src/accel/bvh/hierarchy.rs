@@ -8,6 +8,7 @@ use super::backend_error;
 use super::block::{self, Block, Meshes, Numbers};
 use super::build::{self, Anything, BinaryNode, PrimitiveBox, Room, Triangles, build};
 use super::collapse::{WideTree, collapse};
+use super::gather::Recipe;
 use super::node::{Kind, Node, Reference, UNIT, WIDTH};
 use crate::accel::{BuildOptions, TreeShape};
 use crate::error::Result;
@@ -23,12 +24,13 @@ pub(super) struct Hierarchy {
     units: Arena<Unit>,
     /// How many of them are taken.
     used: usize,
-    /// Triangles of all trees in the order of the leaves, as their tree numbers them. Without blocks, each leaf has
-    /// [`block::SIZE`] places, and [`ABSENT`] where there is none.
+    /// Triangles of all trees in the order of the leaves, as their tree numbers them; where leaves are gathered, they
+    /// are in the recipes instead.
     triangles: Arena<u32>,
-    /// How many of those places are taken.
+    recipes: Arena<Recipe>,
+    /// How many of one or the other are taken.
     places: usize,
-    /// Whether leaves are made of their triangles when they are visited, instead of being kept as blocks.
+    /// Whether leaves are gathered when they are visited, instead of being kept as blocks.
     pub(super) is_compact: bool,
     /// Over the meshes that stand in the world.
     pub(super) own: Tree,
@@ -50,9 +52,6 @@ pub(super) struct Hierarchy {
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C, align(128))]
 struct Unit([u8; UNIT]);
-
-/// In place of a triangle's number.
-const ABSENT: u32 = u32::MAX;
 
 /// How the leaves of a tree are kept.
 enum Leaves<'a> {
@@ -106,10 +105,11 @@ impl Hierarchy {
         let memory = || backend_error("not enough memory for the hierarchy");
         let trees = geometry.objects.len() + 2;
         let units = 2 * triangles + instances + trees;
-        let places = if options.is_compact { block::SIZE * triangles } else { triangles };
+        let [kept, gathered] = if options.is_compact { [0, triangles] } else { [triangles, 0] };
         let mut all = Self {
             units: Arena::zeroed(units).ok_or_else(memory)?,
-            triangles: Arena::zeroed(places).ok_or_else(memory)?,
+            triangles: Arena::zeroed(kept).ok_or_else(memory)?,
+            recipes: Arena::zeroed(gathered).ok_or_else(memory)?,
             is_compact: options.is_compact,
             ..Self::default()
         };
@@ -122,6 +122,7 @@ impl Hierarchy {
         all.world_size = all.own.size.max(all.instances.size);
         all.units.truncate(all.used);
         all.triangles.truncate(all.places);
+        all.recipes.truncate(all.places);
         Ok(all)
     }
 
@@ -142,6 +143,7 @@ impl Hierarchy {
         let numbers = |tree: &Tree| tree.numbers.bytes();
         size_of_val(&*self.units)
             + size_of_val(&*self.triangles)
+            + size_of_val(&*self.recipes)
             + size_of_val(&*self.order)
             + size_of_val(&*self.object_from_world)
             + size_of_val(&*self.objects)
@@ -177,27 +179,36 @@ impl Hierarchy {
         unsafe { &*self.unit(reference).cast() }
     }
 
-    /// The leaf that is referred to, in a tree over these meshes, where blocks are not kept.
-    pub(super) fn gather(
-        &self,
-        reference: Reference,
-        tree: &Tree,
-        meshes: &[TriangleMesh],
-    ) -> Block {
-        let first = block::SIZE * reference.number();
-        let places = self.triangles.get(first..first + block::SIZE).unwrap_or(&[]);
-        let count = places.iter().take_while(|&&triangle| triangle != ABSENT).count();
-        let meshes = Meshes::new(meshes, &tree.numbers);
-        Block::new(&meshes, &places[..count], first as u32)
-    }
-
-    /// The number in its tree of the triangle whose number is kept there; [`ABSENT`] if there is none.
+    /// How to gather the leaf that is referred to.
+    ///
+    /// # Safety
+    /// Only where leaves are gathered: where the hierarchy is compact.
     #[inline(always)]
-    pub(super) fn triangle(&self, place: usize) -> u32 {
-        self.triangles.get(place).copied().unwrap_or(ABSENT)
+    pub(super) unsafe fn recipe(&self, reference: Reference) -> &Recipe {
+        debug_assert!(self.is_compact && reference.kind() == Kind::Leaf as usize);
+        // SAFETY: references to leaves are then made in `add_meshes` only, where the recipes are.
+        unsafe { &*self.recipe_address(reference) }
     }
 
-    /// Where that number is in memory.
+    /// Where that is in memory.
+    #[inline(always)]
+    pub(super) fn recipe_address(&self, reference: Reference) -> *const Recipe {
+        self.recipes.as_ptr().wrapping_add(reference.number())
+    }
+
+    /// The number in its tree of a triangle in a leaf.
+    #[inline(always)]
+    pub(super) fn triangle(&self, leaf: Reference, lane: usize) -> u32 {
+        if self.is_compact {
+            // SAFETY: the hierarchy is compact.
+            unsafe { self.recipe(leaf) }.triangles[lane]
+        } else {
+            // SAFETY: the hierarchy is not compact.
+            self.triangles[unsafe { self.block(leaf) }.first as usize + lane]
+        }
+    }
+
+    /// Where the number that is kept at a place is in memory.
     #[inline(always)]
     pub(super) fn triangle_address(&self, place: usize) -> *const u32 {
         self.triangles.as_ptr().wrapping_add(place)
@@ -216,8 +227,8 @@ impl Hierarchy {
         meshes: &[TriangleMesh],
     ) -> Option<Block> {
         if self.is_compact {
-            let is_there = block::SIZE * reference.number() < self.triangles.len();
-            is_there.then(|| self.gather(reference, tree, meshes))
+            let recipe = self.recipes.get(reference.number())?;
+            Some(recipe.gather(&Meshes::new(meshes, &tree.numbers)))
         } else {
             let is_there = reference.number() < self.units.len();
             // SAFETY: the hierarchy is not compact.
@@ -251,15 +262,11 @@ impl Hierarchy {
         let wide = collapse(&tree);
         let (order, first) = (&tree.order, self.places);
         let root = if self.is_compact {
-            // A multiple of the size of leaves, as each takes so many places.
-            let leaves = Reference::new(Kind::Leaf, first / block::SIZE);
+            let leaves = Reference::new(Kind::Leaf, first);
             for (start, end) in wide.leaf_ranges(&tree.nodes) {
-                let (triangles, places) =
-                    (&order[start as usize..end as usize], &mut self.triangles[self.places..]);
-                let (taken, free) = places[..block::SIZE].split_at_mut(triangles.len());
-                taken.copy_from_slice(triangles);
-                free.fill(ABSENT);
-                self.places += block::SIZE;
+                let triangles = &order[start as usize..end as usize];
+                self.recipes[self.places] = Recipe::new(&meshes, triangles);
+                self.places += 1;
             }
             self.add_tree(&tree.nodes, &wide, &Leaves::Elsewhere(leaves))?
         } else {
@@ -405,9 +412,10 @@ mod tests {
                     pool.expect("threads").install(|| Hierarchy::build(&geometry, &options));
                 let hierarchy = hierarchy.expect("it builds");
                 let units = bytemuck::cast_slice::<_, u8>(&hierarchy.units);
-                [units, bytemuck::cast_slice(&hierarchy.triangles)].concat()
+                let triangles = bytemuck::cast_slice(&hierarchy.triangles);
+                [units, triangles, bytemuck::cast_slice(&hierarchy.recipes)].concat()
             });
-            let least = if is_compact { 4 } else { 15 };
+            let least = if is_compact { 8 } else { 15 };
             assert!(bytes[0].len() > 90_000 * least);
             assert!(bytes.iter().all(|other| *other == bytes[0]), "{quality:?}");
         }

@@ -4,7 +4,8 @@
 //! fifth of the speed, as blocks could no longer stay in registers. Knows how leaves are kept, not who asks.
 
 use super::Bvh;
-use super::block::{Block, SIZE};
+use super::block::{Block, Meshes};
+use super::gather::Recipe;
 use super::hierarchy::Hierarchy;
 use super::node::{Kind, Reference};
 
@@ -21,8 +22,14 @@ pub(super) trait Leaves {
     /// Where what a reference to a node or a leaf names is kept, in two cache lines at most.
     fn address(hierarchy: &Hierarchy, reference: Reference) -> *const u8;
 
-    /// Place of the number of a triangle in a leaf.
-    fn place(hierarchy: &Hierarchy, leaf: Reference, lane: usize) -> usize;
+    /// Steps in which a leaf is fetched, each of which must have been given time to arrive before the next.
+    const STEPS: usize;
+
+    /// Asks the memory for what the block of a leaf is made of.
+    fn fetch(bvh: &Bvh, leaf: Reference, instance: u32, step: usize);
+
+    /// Where the number of a triangle in a leaf is in memory.
+    fn triangle_address(hierarchy: &Hierarchy, leaf: Reference, lane: usize) -> *const u32;
 }
 
 /// As blocks.
@@ -31,7 +38,7 @@ pub(super) struct Kept;
 impl Leaves for Kept {
     #[inline(always)]
     fn block<'a>(bvh: &'a Bvh, leaf: Reference, _: u32, _: &'a mut Option<Block>) -> &'a Block {
-        // SAFETY: `Bvh::is_compact` has been asked before it was chosen to read leaves so.
+        // SAFETY: `Bvh::run` chooses to read leaves so where the hierarchy is not compact.
         unsafe { bvh.hierarchy.block(leaf) }
     }
 
@@ -40,14 +47,20 @@ impl Leaves for Kept {
         hierarchy.unit(reference)
     }
 
+    const STEPS: usize = 0;
+
     #[inline(always)]
-    fn place(hierarchy: &Hierarchy, leaf: Reference, lane: usize) -> usize {
+    fn fetch(_: &Bvh, _: Reference, _: u32, _: usize) {}
+
+    #[inline(always)]
+    fn triangle_address(hierarchy: &Hierarchy, leaf: Reference, lane: usize) -> *const u32 {
         // SAFETY: as above.
-        unsafe { hierarchy.block(leaf) }.first as usize + lane
+        let first = unsafe { hierarchy.block(leaf) }.first;
+        hierarchy.triangle_address(first as usize + lane)
     }
 }
 
-/// As the numbers of their triangles, [`SIZE`] places a leaf.
+/// As recipes.
 pub(super) struct Gathered;
 
 impl Leaves for Gathered {
@@ -58,33 +71,48 @@ impl Leaves for Gathered {
         instance: u32,
         made: &'a mut Option<Block>,
     ) -> &'a Block {
-        made.insert(bvh.gather(leaf, instance))
+        let (recipe, meshes) = bvh.recipe(leaf, instance);
+        made.insert(recipe.gather(&meshes))
     }
 
     #[inline(always)]
     fn address(hierarchy: &Hierarchy, reference: Reference) -> *const u8 {
         if reference.kind() == Kind::Leaf as usize {
-            hierarchy.triangle_address(SIZE * reference.number()).cast()
+            hierarchy.recipe_address(reference).cast()
         } else {
             hierarchy.unit(reference)
         }
     }
 
+    const STEPS: usize = 2;
+
     #[inline(always)]
-    fn place(_: &Hierarchy, leaf: Reference, lane: usize) -> usize {
-        SIZE * leaf.number() + lane
+    fn fetch(bvh: &Bvh, leaf: Reference, instance: u32, step: usize) {
+        let (recipe, meshes) = bvh.recipe(leaf, instance);
+        match step {
+            0 => recipe.fetch_numbers(&meshes),
+            _ => recipe.fetch_vertices(&meshes),
+        }
+    }
+
+    #[inline(always)]
+    fn triangle_address(hierarchy: &Hierarchy, leaf: Reference, lane: usize) -> *const u32 {
+        // In the recipe, which has been read just now.
+        hierarchy.recipe_address(leaf).cast::<u32>().wrapping_add(lane)
     }
 }
 
 impl Bvh {
-    /// The triangles of a leaf of which only their numbers are kept.
-    #[inline(never)]
-    fn gather(&self, leaf: Reference, instance: u32) -> Block {
+    /// How to gather a leaf, and from what.
+    #[inline(always)]
+    fn recipe(&self, leaf: Reference, instance: u32) -> (&Recipe, Meshes<'_>) {
         let (hierarchy, geometry) = (&self.hierarchy, &self.geometry);
         let meshes = match geometry.instances.get(instance as usize) {
             Some(instance) => &geometry.objects[instance.object as usize].meshes,
             None => &geometry.meshes,
         };
-        hierarchy.gather(leaf, hierarchy.tree_of(geometry, instance), meshes)
+        let numbers = &hierarchy.tree_of(geometry, instance).numbers;
+        // SAFETY: `Bvh::run` chooses to read leaves so where the hierarchy is compact.
+        (unsafe { hierarchy.recipe(leaf) }, Meshes::new(meshes, numbers))
     }
 }

@@ -13,6 +13,7 @@ mod collapse;
 mod convoy;
 mod cut;
 mod flight;
+mod gather;
 mod hierarchy;
 mod kernel;
 mod leaves;
@@ -105,16 +106,6 @@ impl Bvh {
         kernel::dispatch(Count { task, steps });
     }
 
-    /// Place of the number of a triangle in a leaf.
-    #[inline(always)]
-    fn place(&self, found: Found) -> usize {
-        let lane = found.lane as usize;
-        match self.hierarchy.is_compact {
-            false => Kept::place(&self.hierarchy, found.leaf, lane),
-            true => Gathered::place(&self.hierarchy, found.leaf, lane),
-        }
-    }
-
     /// Does what is asked about rays, for the way in which leaves are kept.
     #[inline(always)]
     fn run<F: HitFilter, A: Answers, const ANY: bool>(
@@ -138,7 +129,7 @@ impl Bvh {
             return PrimitiveId::MISS;
         }
         let tree = self.hierarchy.tree_of(&self.geometry, found.instance);
-        let triangle = self.hierarchy.triangle(self.place(found));
+        let triangle = self.hierarchy.triangle(found.leaf, found.lane as usize);
         tree.numbers.id(triangle, found.instance)
     }
 }

@@ -12,6 +12,7 @@ use crate::geometry::{Geometry, NONE, Ray};
 use crate::math::{Vec3, Vec4};
 use crate::os::Arena;
 use bytemuck::Zeroable;
+use std::alloc::{Layout, handle_alloc_error};
 use std::hint::select_unpredictable;
 
 /// References that a stack has room for, with what vectors are written beyond its top: both levels as deep as
@@ -88,10 +89,11 @@ const _: () = assert!(size_of::<Slot>() / 64 % 2 == 1);
 /// Slots on huge pages.
 pub(super) type Slots = Arena<Slot>;
 
-/// That many slots; none if there is no memory for them.
+/// That many slots. Without memory for them the program ends, as it does wherever memory that small is lacking.
 #[cold]
 pub(super) fn slots(count: usize) -> Slots {
-    Arena::zeroed(count).unwrap_or_default()
+    let missing = || handle_alloc_error(Layout::new::<Slot>());
+    Arena::zeroed(count).unwrap_or_else(missing)
 }
 
 impl Slot {

@@ -124,7 +124,7 @@ impl<'a> Walk<'a> {
             if !block.has(lane) {
                 continue;
             }
-            let triangle = self.hierarchy.triangle(block.first as usize + lane);
+            let triangle = self.hierarchy.triangle(reference, lane);
             count += 1;
             let id = self.tree.numbers.id(triangle, 0);
             let seen = self.seen[id.geometry as usize].get_mut(id.primitive as usize);

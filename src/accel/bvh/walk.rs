@@ -72,8 +72,7 @@ impl<'a, F: HitFilter, A, L: Leaves, const ANY: bool> Batch<'a, F, A, L, ANY> {
                 slot.best = found.or(slot.best, is_better);
                 if !ANY {
                     // Its number will be asked for when the ray is done.
-                    let place = L::place(&bvh.hierarchy, found.leaf, lane as usize);
-                    prefetch(bvh.hierarchy.triangle_address(place));
+                    prefetch(L::triangle_address(&bvh.hierarchy, found.leaf, lane as usize));
                 }
                 is_better
             } else {

@@ -1,7 +1,7 @@
 //! Packets against the same rays one at a time: the same children, the same triangles, the same distances, to the bit.
 
 use super::{Avx512, Kernel, PacketKernel, Plain, Touched};
-use crate::accel::bvh::block::{Block, Meshes, SIZE, VERTICES};
+use crate::accel::bvh::block::{Block, Meshes, Numbers, SIZE, VERTICES};
 use crate::accel::bvh::node::{Kind, Node, Reference, WIDTH};
 use crate::accel::bvh::packet::{Packet, Packets, RAYS, is_coherent};
 use crate::accel::bvh::slot::{Found, Slot};
@@ -71,7 +71,7 @@ fn a_packet_opens_to_what_its_rays_meet_one_by_one() {
                 Aabb { min: p.min(p + q), max: p.max(p + q) }
             })
             .collect();
-        let node = Node::new(&boxes, n / 2, 64, None);
+        let node = Node::new(&boxes, n / 2, 64, Reference::new(Kind::Leaf, 100));
         // Some have ended.
         let active = (rng.unit() * 65536.0) as u16 | 1;
         for ordered in [false, true] {
@@ -113,9 +113,9 @@ fn a_packet_hits_what_its_rays_hit_one_by_one() {
         let n = 1 + (rng.unit() * SIZE as f32) as usize % SIZE;
         let mut corner = || (rng.unit() * VERTICES as f32) as u32 % VERTICES as u32;
         let triangles: Vec<_> = (0..n).map(|_| [corner(), corner(), corner()]).collect();
-        let mesh = TriangleMesh::new(points.map(|p| p.to_array()).to_vec(), triangles, false);
+        let meshes = [TriangleMesh::new(points.map(|p| p.to_array()).to_vec(), triangles, false)];
         let numbers: Vec<u32> = (0..n as u32).collect();
-        let block = Block::new(&Meshes::new(&[mesh]), &numbers, 0);
+        let block = Block::new(&Meshes::new(&meshes, &Numbers::new(&meshes)), &numbers, 0);
         let active = (rng.unit() * 65536.0) as u16 | 1;
         let mut touched = [Touched::default(); SIZE];
         let any = PacketKernel::inside(kernel, packet, &block, active, &mut touched);

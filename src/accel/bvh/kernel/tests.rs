@@ -3,8 +3,8 @@
 #[cfg(target_arch = "x86_64")]
 use super::{Avx2, Avx512};
 use super::{Kernel, Plain};
-use crate::accel::bvh::block::{Block, Meshes, SIZE, VERTICES};
-use crate::accel::bvh::node::{Node, WIDTH};
+use crate::accel::bvh::block::{Block, Meshes, Numbers, SIZE, VERTICES};
+use crate::accel::bvh::node::{Kind, Node, Reference, WIDTH};
 use crate::accel::bvh::slot::Slot;
 use crate::geometry::{Aabb, Ray, TriangleMesh, intersect_triangle};
 use crate::math::Vec3;
@@ -92,7 +92,7 @@ impl Check for Opens {
         for round in 0..4000 {
             let scale = 10.0_f32.powi(round % 21 - 10);
             let boxes = rng.boxes(scale);
-            let node = Node::new(&boxes, boxes.len() / 2, 64, None);
+            let node = Node::new(&boxes, boxes.len() / 2, 64, Reference::new(Kind::Leaf, 100));
             let ray = rng.ray(scale);
             let hit = |i: &usize| entry(&ray, &boxes[*i]).is_some();
             let wanted: Vec<_> = (0..boxes.len()).filter(hit).collect();
@@ -140,7 +140,7 @@ fn block(corners: &[[Vec3; 3]]) -> Block {
     let triangles: Vec<u32> = (0..corners.len() as u32).collect();
     let indices = triangles.iter().map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let meshes = [TriangleMesh::new(positions, indices, false)];
-    Block::new(&Meshes::new(&meshes), &triangles, 0)
+    Block::new(&Meshes::new(&meshes, &Numbers::new(&meshes)), &triangles, 0)
 }
 
 /// The same triangles as in the other kernels, at the distances of the routine that makes the hit.
