@@ -217,7 +217,7 @@ pub(super) struct Build {
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = named("quality", &Quality::ALL),
           help_heading = "Machine")]
     pub(super) quality: Quality,
-    /// Hierarchy in a quarter of the memory, and about half as fast; the picture is the same
+    /// Hierarchy in half of the memory, for rays about half as fast; the picture is the same
     #[arg(long, help_heading = "Machine")]
     pub(super) low_memory: bool,
 }

@@ -145,7 +145,7 @@ fn the_instruction_set_changes_no_hit() {
     }
 }
 
-/// What a build says of its tree is what is found in it; compact leaves take a fifth of the memory.
+/// What a build says of its tree is what is found in it; compact leaves take half of the memory.
 #[test]
 fn statistics_are_those_of_the_tree() {
     let mesh = sphere(Vec3::ZERO, 1.0, 200, false);
@@ -161,7 +161,7 @@ fn statistics_are_those_of_the_tree() {
         assert_eq!(walked.triangles, triangles);
         walked.bytes_per_triangle
     });
-    assert!(bytes[0] < 32.0 && bytes[1] < 0.4 * bytes[0], "{bytes:?}");
+    assert!(bytes[0] < 32.0 && bytes[1] < 0.6 * bytes[0], "{bytes:?}");
 }
 
 /// Rays that are none miss, and do not hang.

@@ -75,3 +75,29 @@ fn an_environment_that_is_not_there() {
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("missing.hdr") && !said.contains("missing.obj"), "{said}");
 }
+
+/// How a hierarchy is built, and in how much memory, changes no pixel, on either backend.
+#[cfg(feature = "bvh")]
+#[test]
+fn how_hierarchies_are_built_changes_no_pixel() {
+    let bench = Bench::new();
+    let made = bench.glint(&["generate", "hairball", "-o", "hair.obj", "--triangles", "5k"]);
+    assert_eq!(made.status.code(), Some(0));
+    for backend in ["embree", "bvh"] {
+        let mut bytes = Vec::new();
+        let pictures = ["", "--low-memory", "--quality=fast", "--quality=high"].map(|option| {
+            let mut all = vec!["hair.obj", "--size", "48x48", "-o", "a.png", "--exposure", "0"];
+            all.extend(["--accel", backend, "--stats", "a.json"]);
+            all.extend(Some(option).filter(|option| !option.is_empty()));
+            let (code, said) = bench.render(&all);
+            assert_eq!(code, 0, "{said}");
+            let stats = std::fs::read_to_string(bench.path("a.json")).expect("statistics");
+            let stats: serde_json::Value = serde_json::from_str(&stats).expect("JSON");
+            bytes.push(stats["memory_bytes"]["acceleration"].as_f64().expect("a number"));
+            assert_eq!(stats["hierarchy"].is_object(), backend == "bvh");
+            std::fs::read(bench.path("a.png")).expect("a picture")
+        });
+        assert!(pictures.iter().all(|picture| *picture == pictures[0]), "{backend}");
+        assert!(bytes[1] < 0.75 * bytes[0], "{backend}: {bytes:?}");
+    }
+}
