@@ -227,7 +227,7 @@ fn who_is_wrong_together_is_found_out_by_the_oracle() {
     let world = world(Kind::City, 5000);
     let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
     let sets = ray_sets(&world, &backend, 3000);
-    let lie = |id: PrimitiveId| (id.primitive % 5 != 0).then_some(id);
+    let lie = |id: PrimitiveId| (!id.primitive.is_multiple_of(5)).then_some(id);
     let loses = Liar { backend: &backend, lie, honest_calls: 0.into() };
     let contestants = ["a", "b"].map(|name| contestant(&loses, name, Law::Exact));
     let steps = RefCell::new(Vec::new());
