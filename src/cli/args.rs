@@ -160,8 +160,10 @@ Examples:
   glint bench model.obj --kinds primary,shadow --time 20s
   glint bench model.obj --isa avx2 --threads 1 --repetitions 15 --json > avx2.json
 
-A contestant is timed only if all its answers are right: those that differ from Embree's robust mode are
-decided by arithmetic in double precision. Embree's fast modes may be wrong once in 10 000 rays.
+A contestant is timed only if its answers are right: those that differ from Embree's robust mode, and a sample of
+those that all agree on, go before an exact oracle, which knows no tolerance. Of the in-house BVH it excuses what
+the rounding of its kernel is proven to be worth. Embree may choose freely among what is equally near, or an ulp
+behind, and be wrong once in 10 000 rays.
 Exit code 3: answers of a contestant were wrong.";
 
 /// `glint bench`.
@@ -194,7 +196,7 @@ pub(super) struct Bench {
     /// Widest instructions for both sides: portable, avx2 or avx512 [default: all that there are]
     #[arg(long, value_name = "NAME", value_parser = named("instruction set", &Isa::ALL), help_heading = "Race")]
     pub(super) isa: Option<Isa>,
-    /// Time for each scene, building included; what there is time for is repeated
+    /// Time for each scene, building included, the oracle on top; what there is time for is repeated
     #[arg(long, value_name = "TIME", default_value = "2m", value_parser = duration, help_heading = "Race")]
     pub(super) time: Duration,
     /// Take every time exactly so often, however long that is

@@ -12,9 +12,10 @@ use glint::math::DVec3;
 use glint::os::Isa;
 use glint::scene::{Camera, Projection};
 use glint::study::bench::{
-    Contestant, Findings, InHouse, Law, RayKind, RaySet, RaySource, Role, Settings, contest,
+    Contestant, Findings, InHouse, Law, RayKind, RaySet, RaySource, Role, Sample, Settings, contest,
 };
 use glint::world::World;
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::Duration;
 
@@ -215,6 +216,40 @@ fn who_lies_gets_no_time_and_is_found_out() {
     assert!(swapped.filter(|run| run.rays_per_second.is_none()).count() > 0);
     // Nobody is compared with a liar, nor a liar with anybody. (There is no rival here at all.)
     assert!(findings.ratios.is_empty() && findings.heats.is_empty());
+    // The oracle had much to judge, and nothing against what all agree on.
+    let agreed: Vec<_> = findings.scene.rays.iter().map(|count| count.agreed).collect();
+    assert!(agreed.iter().all(|agreed| agreed.judged > 500 && agreed.wrong == 0), "{agreed:?}");
+    let samples: usize = agreed.iter().map(|agreed| agreed.judged).sum();
+    assert!(findings.scene.oracle.judged > samples + 6000, "{:?}", findings.scene.oracle);
+}
+
+#[test]
+fn who_is_wrong_together_is_found_out_by_the_oracle() {
+    let world = world(Kind::City, 5000);
+    let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
+    let sets = ray_sets(&world, &backend, 3000);
+    let lie = |id: PrimitiveId| (!id.primitive.is_multiple_of(5)).then_some(id);
+    let loses = Liar { backend: &backend, lie, honest_calls: 0.into() };
+    let contestants = ["a", "b"].map(|name| contestant(&loses, name, Law::Exact));
+    let steps = RefCell::new(Vec::new());
+    let tell = |step, _| steps.borrow_mut().push(step);
+    let findings = contest("test", &world.geometry, &sets, &contestants, &settings(&[1]), &tell);
+    assert!(findings.runs.iter().all(|run| run.agreement.differing() == 0));
+    for count in &findings.scene.rays {
+        let Sample { judged, wrong } = count.agreed;
+        assert_eq!(judged, 1000);
+        // A fifth of what is hit, except where the surface behind does as well: never.
+        let expected = 0.2 * 1000.0 * count.hits as f64 / (0.8 * count.rays as f64);
+        let low = (0.3 * expected) as usize;
+        assert!(wrong > low.max(10), "{}: {wrong} of about {expected}", count.ray_kind);
+    }
+    // One oracle for all of it, built in a step of its own before the race.
+    let mut steps = steps.into_inner();
+    steps.dedup();
+    let first = |name| steps.iter().position(|step| *step == name).expect("a step");
+    assert!(first("building the oracle") < first("racing"));
+    assert_eq!(steps.iter().filter(|step| **step == "building the oracle").count(), 1);
+    assert_eq!(findings.scene.oracle.judged, 6000);
 }
 
 #[test]

@@ -14,7 +14,8 @@ pub(super) struct MeshTree {
 impl MeshTree {
     /// Leaves out triangles with a corner that is not finite: no ray meets them.
     pub(super) fn new(meshes: &[TriangleMesh]) -> Self {
-        let mut boxes = Vec::new();
+        let all = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        let mut boxes = Vec::with_capacity(all);
         let mut first = Vec::with_capacity(meshes.len());
         let mut next = 0_u32;
         for mesh in meshes {

@@ -47,6 +47,7 @@ pub(super) fn findings(findings: &Findings) -> String {
             probe.max
         ));
     }
+    lines.push(scene.verdict());
     builds(&findings.builds, &mut lines);
     for (i, run) in findings.runs.iter().enumerate() {
         let before = i.checked_sub(1).map(|i| &findings.runs[i]);

@@ -2,21 +2,24 @@
 
 use super::contestant::{Contestant, Role};
 use super::field::{Event, Field, HeatTime};
+use super::judge::Judging;
 use super::race::{Entry, Plan, Start, Story, Times, race};
 use super::rays::RaySet;
 use super::result::{Comparison, Findings, Heat, RayCount, Run, Scene};
+use super::sample::sample;
 use super::statistics::{Ratio, Spread};
 use super::{Settings, Tell};
 use crate::geometry::Geometry;
 use crate::os::Isa;
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Has `contestants` trace `sets` of rays through `geometry`. The first of them whose role is
 /// [`Role::Baseline`], or else the first of all, is the reference. Nothing is built, so there is nothing in
 /// `builds`.
 pub fn contest(
     name: &str,
-    geometry: &Geometry,
+    geometry: &Arc<Geometry>,
     sets: &[RaySet],
     contestants: &[Contestant<'_>],
     settings: &Settings,
@@ -24,7 +27,7 @@ pub fn contest(
 ) -> Findings {
     let start = Instant::now();
     let most_threads = settings.threads.iter().copied().max().unwrap_or(1);
-    let mut field = Field::new(geometry, contestants, most_threads);
+    let mut field = Field::new(geometry, contestants, most_threads, tell);
 
     // Who is right, and who may race.
     let (mut starts, mut heats) = (Vec::new(), Vec::new());
@@ -54,19 +57,24 @@ pub fn contest(
                 times: vec![Times::default(); settings.threads.len()],
             }
         });
-        let entries = entries.collect();
-        starts.push(Start { event, entries });
+        let entries: Vec<_> = entries.collect();
+        let checked = entries.iter().map(|entry: &Entry| &entry.checked);
+        let agreed = sample(&mut field.judge, &event, checked);
+        starts.push(Start { event, entries, agreed });
     }
+    field.judge.leave();
+    let oracle = field.judge.work;
 
-    // The race.
-    let time = settings.time.saturating_sub(start.elapsed());
+    // The race. What the oracle took is not taken from it.
+    let judging = Duration::from_secs_f64(oracle.build_seconds + oracle.judge_seconds);
+    let time = (settings.time + judging).saturating_sub(start.elapsed());
     let plan = Plan { threads: &settings.threads, repetitions: settings.repetitions, time };
     let story = race(&mut field, &mut starts, &plan, tell);
     let runs = starts.iter().flat_map(|start| runs(name, contestants, start, settings)).collect();
     let ratios = starts.iter().flat_map(|start| ratios(name, contestants, start, settings));
     Findings {
         ratios: ratios.collect(),
-        scene: scene(name, geometry, &starts, &story, start),
+        scene: scene(name, geometry, &starts, &story, (oracle, start)),
         builds: Vec::new(),
         heats,
         runs,
@@ -78,22 +86,24 @@ fn scene(
     geometry: &Geometry,
     starts: &[Start<'_>],
     story: &Story,
-    begun: Instant,
+    (oracle, begun): (Judging, Instant),
 ) -> Scene {
-    let count = |Event { set, reference }: &Event<'_>| RayCount {
-        ray_kind: set.kind.name(),
-        rays: set.rays.len(),
-        hits: reference.iter().filter(|hit| hit.is_hit()).count(),
+    let count = |Start { event, agreed, .. }: &Start<'_>| RayCount {
+        ray_kind: event.set.kind.name(),
+        rays: event.set.rays.len(),
+        hits: event.reference.iter().filter(|hit| hit.is_hit()).count(),
+        agreed: *agreed,
     };
     Scene {
         scene: name.to_owned(),
         triangles: geometry.placed_triangles(),
         stored_triangles: geometry.stored_triangles(),
         geometry_bytes: geometry.bytes(),
-        rays: starts.iter().map(|start| count(&start.event)).collect(),
+        rays: starts.iter().map(count).collect(),
         repetitions: story.repetitions,
         repeated_turns: story.repeated_turns,
         probes: story.probes.iter().map(|probe| probe.spread()).collect(),
+        oracle,
         seconds: begun.elapsed().as_secs_f64(),
     }
 }

@@ -1,6 +1,7 @@
 //! Who takes part: a backend, one way of calling it, and rays in the layout that it likes best.
 
 use super::rays::Query;
+use crate::accel::oracle::{Class, Judgement};
 use crate::geometry::{PrimitiveId, Ray};
 use crate::os::Isa;
 
@@ -20,12 +21,17 @@ pub struct Contestant<'a> {
     pub tracer: Box<dyn Tracer + 'a>,
 }
 
-/// What answers are held to.
+/// What answers are held to, by the exact oracle ([`crate::accel::oracle`]). It knows no tolerance, but how far from the
+/// edges of a triangle the kernel of the in-house BVH may err, which is proven, and for that kernel alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Law {
-    /// Every answer must be right, up to the rounding of numbers.
+    /// The law of the in-house BVH. An answer is wrong unless it is lawful ([`Judgement::is_lawful`]): what is met first,
+    /// of several equally near the first by id, or off by what the rounding of that kernel is proven to be
+    /// worth. None may be wrong.
     Exact,
-    /// Promises no more than to be right nearly always: one wrong answer in ten thousand is let pass.
+    /// For who rounds in ways of its own and chooses freely among what is equally near: Embree, whose robust modes
+    /// promise no leaks, but no bound either. An answer is wrong unless it is lawful, or within an ulp of being the nearest.
+    /// One in ten thousand may be wrong.
     Approximate,
 }
 
@@ -44,6 +50,12 @@ pub enum Role {
 }
 
 impl Law {
+    /// Whether an answer that is so judged is not wrong.
+    pub fn allows(self, judgement: &Judgement) -> bool {
+        let is_tied = matches!(judgement.class, Class::Tie | Class::NearTie);
+        judgement.is_lawful() || self == Self::Approximate && is_tied
+    }
+
     /// Whether so many wrong answers of `compared` are let pass.
     pub fn tolerates(self, wrong: usize, compared: usize) -> bool {
         match self {

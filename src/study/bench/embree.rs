@@ -49,7 +49,7 @@ impl Structure for Variant {
                 backend: "embree",
                 variant: format!("{}, {}", self.name, call.name()),
                 isa: self.isa,
-                law: if self.variant.robust { Law::Exact } else { Law::Approximate },
+                law: Law::Approximate,
                 role,
                 tracer: Box::new(Called { embree: &self.embree, call }),
             })

@@ -1,13 +1,16 @@
 //! The field of a contest: contestants, their rays and room for them; turns, checks and heats.
 
-use super::agreement::{Agreement, compare};
-use super::contestant::{Answer, Contestant, Role};
+use super::Tell;
+use super::agreement::{Agreement, Asked, compare};
+use super::contestant::{Answer, Contestant, Law, Role};
 use super::course::{BATCH, Course};
 use super::crew::Lap;
+use super::judge::Judge;
 use super::rays::{Query, RayKind, RaySet};
 use crate::accel::resolve_all;
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use crate::sampling::hash::combine;
+use std::sync::Arc;
 
 /// Rays that a contestant traces before the clock starts: a few milliseconds, in which its nodes come back to
 /// the caches that the contestant before has filled with its own.
@@ -30,18 +33,21 @@ const QUALIFIERS: usize = 2;
 
 /// Contestants and room for their rays.
 pub(super) struct Field<'a> {
-    pub(super) geometry: &'a Geometry,
-    pub(super) contestants: &'a [Contestant<'a>],
+    geometry: &'a Geometry,
+    contestants: &'a [Contestant<'a>],
+    pub(super) judge: Judge<'a>,
     courses: Vec<Course<'a>>,
     most_threads: usize,
     /// Rays of a turn.
     turn: usize,
 }
 
-/// Rays with the right answers.
+/// Rays with the answers of the reference.
 pub(super) struct Event<'a> {
     pub(super) set: &'a RaySet,
     pub(super) reference: Vec<Hit>,
+    /// What the reference is held to.
+    pub(super) law: Law,
 }
 
 /// How fast a contestant was in a heat.
@@ -56,19 +62,23 @@ pub(super) struct HeatTime {
 pub(super) struct Checked {
     pub(super) agreement: Agreement,
     pub(super) hits: usize,
+    /// Places of the rays on which it differs from the reference.
+    pub(super) differing: Vec<usize>,
     /// Of the answers of each turn, so that later ones can be held against them.
     pub(super) digests: Vec<u64>,
 }
 
 impl<'a> Field<'a> {
     pub(super) fn new(
-        geometry: &'a Geometry,
+        geometry: &'a Arc<Geometry>,
         contestants: &'a [Contestant<'a>],
         most_threads: usize,
+        tell: Tell<'a>,
     ) -> Self {
         Self {
             geometry,
             contestants,
+            judge: Judge::new(geometry, tell),
             courses: contestants.iter().map(|_| Course::default()).collect(),
             most_threads,
             turn: TURN.max(SHARE * most_threads),
@@ -83,14 +93,15 @@ impl<'a> Field<'a> {
     /// Rays with the answers of the baseline, or of the first contestant where there is none.
     pub(super) fn event(&mut self, set: &'a RaySet) -> Event<'a> {
         let baseline = self.contestants.iter().position(|c| c.role == Role::Baseline).unwrap_or(0);
-        let reference = match self.contestants.get(baseline) {
+        let (reference, law) = match self.contestants.get(baseline) {
             Some(contestant) => {
                 let course = &mut self.courses[baseline];
-                closest(self.geometry, contestant, course, &set.rays, self.most_threads)
+                let hits = closest(self.geometry, contestant, course, &set.rays, self.most_threads);
+                (hits, contestant.law)
             }
-            None => vec![Hit::MISS; set.rays.len()],
+            None => (vec![Hit::MISS; set.rays.len()], Law::Exact),
         };
-        Event { set, reference }
+        Event { set, reference, law }
     }
 
     /// Number of turns in which a contestant traces all rays.
@@ -123,28 +134,27 @@ impl<'a> Field<'a> {
 
     /// Compares all answers of a contestant. Nothing is timed.
     pub(super) fn check(&mut self, contestant: usize, event: &Event<'_>) -> Checked {
-        let mut checked = Checked { agreement: Agreement::default(), hits: 0, digests: Vec::new() };
+        let (mut hits, mut digests, mut answers) = (0, Vec::new(), Vec::new());
         for turn in 0..self.turns(event.set) {
-            let (_, answers) = self.run(contestant, event.set, turn, self.most_threads);
-            let rays = self.stretch(&event.set.rays, turn);
-            let reference = self.stretch(&event.reference, turn);
-            let agreement =
-                self.compare(contestant, event.set.kind.query(), (rays, reference), &answers);
-            checked.agreement.add(&agreement);
-            checked.hits += answers.iter().filter(|answer| answer.hit).count();
-            checked.digests.push(digest(&answers));
+            let (_, those) = self.run(contestant, event.set, turn, self.most_threads);
+            hits += those.iter().filter(|answer| answer.hit).count();
+            digests.push(digest(&those));
+            answers.extend(those);
         }
-        checked
+        let Event { set, reference, law } = event;
+        let query = set.kind.query();
+        let asked = Asked { query, rays: &set.rays, reference, law: *law };
+        let (agreement, differing) = self.compare(contestant, &asked, &answers);
+        Checked { agreement, hits, differing, digests }
     }
 
     fn compare(
-        &self,
+        &mut self,
         contestant: usize,
-        query: Query,
-        (rays, reference): (&[Ray], &[Hit]),
+        asked: &Asked<'_>,
         answers: &[Answer],
-    ) -> Agreement {
-        let tracer = &self.contestants[contestant].tracer;
+    ) -> (Agreement, Vec<usize>) {
+        let Contestant { tracer, law, isa, .. } = &self.contestants[contestant];
         let witness = |ray: &Ray| {
             let mut answers = Vec::new();
             if let Some(mut batch) = tracer.batch(Query::Closest) {
@@ -154,8 +164,8 @@ impl<'a> Field<'a> {
             }
             answers.first().map_or(PrimitiveId::MISS, |answer| answer.id)
         };
-        self.contestants[contestant].isa.limit();
-        compare(self.geometry, query, rays, reference, answers, &witness)
+        isa.limit();
+        compare(&mut self.judge, asked, answers, *law, &witness)
     }
 
     /// Times every contestant that must qualify on a sample of the rays, on one thread.
@@ -186,7 +196,8 @@ impl<'a> Field<'a> {
             .zip(best)
             .map(|(&i, seconds)| {
                 let answers = self.courses[i].answers(query, 0, rays.len());
-                let agreement = self.compare(i, query, (&rays, &reference), &answers);
+                let asked = Asked { query, rays: &rays, reference: &reference, law: event.law };
+                let (agreement, _) = self.compare(i, &asked, &answers);
                 let law = self.contestants[i].law;
                 let right = law.tolerates(agreement.unexplained, agreement.compared);
                 let rays_per_second = right.then(|| rays.len() as f64 / seconds);

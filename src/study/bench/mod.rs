@@ -2,8 +2,8 @@
 //!
 //! What is done, in order: every structure is built several times; rays of every kind are made from the
 //! scene; each of Embree's calls for several rays is tried on a sample (the heats), and the best two go on;
-//! every answer of every contestant is compared with those of Embree's robust mode; whoever was right races
-//! (`race`): turns on the same rays in rotating order, medians over repetitions, and
+//! every answer of every contestant is compared with those of Embree's robust mode, and the exact oracle judges those
+//! that differ and some of those that do not; whoever was right races (`race`): turns on the same rays in rotating order, medians over repetitions, and
 //! differences inside the noise called ties. Must not print.
 
 mod agreement;
@@ -16,11 +16,13 @@ mod crew;
 mod embree;
 mod field;
 mod in_house;
+mod judge;
 mod machine;
 mod probe;
 mod race;
 mod rays;
 mod result;
+mod sample;
 mod statistics;
 
 pub use agreement::Agreement;
@@ -28,12 +30,14 @@ pub use contest::contest;
 pub use contestant::{Answer, Batch, Contestant, Law, Role, Tracer};
 pub use course::BATCH;
 pub use in_house::InHouse;
+pub use judge::Judging;
 pub use machine::most_threads;
 pub use probe::SLOW;
 pub use rays::{Query, RayKind, RaySet, RaySource};
 pub use result::{
     Build, Comparison, Findings, Heat, Machine, ProbeSpread, RayCount, Report, Run, Scene,
 };
+pub use sample::Sample;
 pub use statistics::{Ratio, Spread};
 
 use crate::accel::BuildOptions;
@@ -61,7 +65,7 @@ pub struct Settings {
     pub isa: Isa,
     /// Exactly so many repetitions, or as many as there is time for.
     pub repetitions: Option<usize>,
-    /// For everything that is done with a scene.
+    /// For everything that is done with a scene, except what the exact oracle takes.
     pub time: Duration,
     /// Whether all of Embree's calls race, without heats.
     pub all_calls: bool,

@@ -7,12 +7,15 @@
 use super::Tell;
 use super::field::{Checked, Event, Field, digest};
 use super::probe::Probe;
+use super::sample::Sample;
 use std::time::{Duration, Instant};
 
 /// An event and those who take part in it.
 pub(super) struct Start<'a> {
     pub(super) event: Event<'a>,
     pub(super) entries: Vec<Entry>,
+    /// Some of the rays on which all of them agree.
+    pub(super) agreed: Sample,
 }
 
 /// A contestant in an event.

@@ -4,6 +4,8 @@
 //! says where an entry belongs.
 
 use super::agreement::Agreement;
+use super::judge::Judging;
+use super::sample::Sample;
 use super::statistics::{Ratio, Spread};
 use crate::error::Result;
 use serde::Serialize;
@@ -64,6 +66,8 @@ pub struct Scene {
     pub repeated_turns: usize,
     /// The fixed piece of arithmetic that shows a busy machine, for each number of threads.
     pub probes: Vec<ProbeSpread>,
+    /// What the exact oracle did.
+    pub oracle: Judging,
     /// Wall-clock seconds of the whole bench.
     pub seconds: f64,
 }
@@ -78,6 +82,8 @@ pub struct RayCount {
     pub rays: usize,
     /// Those that meet a surface, by the reference.
     pub hits: usize,
+    /// Some of the rays on which all agree.
+    pub agreed: Sample,
 }
 
 /// How evenly a fixed piece of arithmetic ran between the turns: times in units of the shortest.
@@ -190,6 +196,20 @@ pub struct Comparison {
     pub rival: String,
     /// Above 1, the in-house BVH is the faster one.
     pub ratio: Ratio,
+}
+
+impl Scene {
+    /// What the exact oracle found, in a line.
+    pub fn verdict(&self) -> String {
+        let Judging { judged, build_seconds, judge_seconds } = self.oracle;
+        let sum = |count: fn(&Sample) -> usize| self.rays.iter().map(|r| count(&r.agreed)).sum();
+        let (agreed, wrong): (usize, usize) = (sum(|s| s.judged), sum(|s| s.wrong));
+        format!(
+            "exact oracle: {} answers that differ judged, {agreed} that all agree on, of which {wrong} wrong; \
+             {build_seconds:.1} + {judge_seconds:.1} s",
+            judged - agreed
+        )
+    }
 }
 
 impl Report {

@@ -33,7 +33,9 @@ fn the_schema_names_what_scripts_rely_on() {
     let promised = "runs/[]/backend runs/[]/variant runs/[]/isa runs/[]/threads runs/[]/ray_kind \
         runs/[]/rays_per_second/median runs/[]/rays_per_second/min runs/[]/rays_per_second/max \
         runs/[]/hits runs/[]/agreement/compared runs/[]/agreement/missed runs/[]/agreement/false_hits \
-        runs/[]/agreement/ties runs/[]/agreement/unexplained builds/[]/backend builds/[]/variant \
+        runs/[]/agreement/ties runs/[]/agreement/unexplained runs/[]/agreement/reference_wrong \
+        scenes/[]/rays/[]/agreed/judged scenes/[]/rays/[]/agreed/wrong scenes/[]/oracle/judged \
+        scenes/[]/oracle/build_seconds scenes/[]/oracle/judge_seconds builds/[]/backend builds/[]/variant \
         builds/[]/seconds builds/[]/bytes machine/cpu machine/threads machine/date";
     assert_eq!(not_promised(&schema("bench"), promised), Vec::<String>::new());
 }
@@ -74,11 +76,22 @@ fn a_bench_of_two_scenes_says_all_of_it_in_json_and_on_a_page() {
         assert!(build["repetitions"].as_u64() >= Some(3), "{build}");
         assert!(build["bytes"].as_u64() > Some(10_000), "{build}");
     }
+    for scene in report["scenes"].as_array().unwrap() {
+        assert!(scene["oracle"]["judged"].as_u64() > Some(5000), "{scene}");
+        assert!(scene["rays"].as_array().unwrap().iter().all(|r| r["agreed"]["wrong"] == 0));
+    }
     assert_eq!(report["scenes"][1]["triangles"], 8000);
     assert_eq!(report["scenes"][1]["stored_triangles"], 4000);
 
     // The tables went to stderr.
-    for words in ["against Embree", "M rays/s", "bytes/triangle", "deep-bounce", "twice.toml"] {
+    for words in [
+        "against Embree",
+        "exact oracle: ",
+        "M rays/s",
+        "bytes/triangle",
+        "deep-bounce",
+        "twice.toml",
+    ] {
         assert!(said.contains(words), "no `{words}` in {said}");
     }
     assert!(said.lines().all(|line| line.chars().count() < 120), "{said}");
@@ -87,6 +100,7 @@ fn a_bench_of_two_scenes_says_all_of_it_in_json_and_on_a_page() {
     let page = fs::read_to_string(folder.path("r.html")).unwrap();
     assert!(page.contains("<h2>a&lt;b&gt;&amp;&#39;c&#39;.obj</h2>"));
     assert!(!page.contains("a<b>"));
+    assert_eq!(page.matches("exact oracle: ").count(), scenes.len());
     assert_eq!(page.matches("<svg").count(), 2 * 6 * 2);
     for elsewhere in ["http", "src=", "href=", "@import", "url("] {
         assert!(!page.contains(elsewhere), "{elsewhere}");
