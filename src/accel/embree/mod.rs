@@ -63,8 +63,16 @@ impl EmbreeAccelerator {
     /// # Errors
     /// Embree's own, in its words: out of memory, unsupported CPU, invalid geometry.
     pub fn build(geometry: Arc<Geometry>, threads: usize) -> Result<Self> {
+        Self::with_isa(geometry, threads, Isa::detect())
+    }
+
+    /// [`EmbreeAccelerator::build`] for instructions up to those of `isa`: other kernels of Embree's may round otherwise.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_isa(geometry: Arc<Geometry>, threads: usize, isa: Isa) -> Result<Self> {
         let start = Instant::now();
-        let device = Device::new(threads, Isa::detect())?;
+        let device = Device::new(threads, isa)?;
         let scene = EmbreeScene::build(&device, &geometry, EmbreeVariant::PRODUCTION, true)?;
         let stats = BuildStats { seconds: start.elapsed().as_secs_f64(), bytes: device.bytes() };
         Ok(Self { scene, device, geometry, stats })
