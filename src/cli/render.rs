@@ -16,6 +16,7 @@ use crate::error::{Error, Result};
 use crate::film::Region;
 use crate::filter::FilterSampler;
 use crate::load;
+#[cfg(feature = "bvh")]
 use crate::os::Isa;
 use crate::render::{RenderJob, Rendered, render, render_layers};
 use crate::trace::{Tracer, Wavefront};

@@ -72,7 +72,8 @@ pub struct DifferingPixels {
 }
 
 impl DifferingPixels {
-    /// The largest share of pixels that rays along edges explain.
+    /// The largest share of pixels that rays along edges explain: 16 samples a pixel of hair of two million triangles make
+    /// 0.0007, other models next to none; it grows with the samples.
     pub const MOST: f64 = 0.002;
 
     /// Whether there are more than that.
