@@ -49,8 +49,8 @@ Examples:
   glint render model.obj --camera-from 3,2,5 --camera-to 0,1,0 --fov 35 --env studio.hdr
   glint render model.obj --override-material diffuse:0.7,0.7,0.7 --env constant:1,1,1";
 
-/// `glint render`.
-#[derive(Debug, Args)]
+/// `glint render`. The default is a command line that names no scene and says nothing.
+#[derive(Debug, Default, Args)]
 pub(super) struct Render {
     /// Scene file (.toml) or model (.obj)
     pub(super) scene: PathBuf,
@@ -159,6 +159,8 @@ Examples:
       one page with bars for both scenes
   glint bench model.obj --kinds primary,shadow --time 20s
   glint bench model.obj --isa avx2 --threads 1 --repetitions 15 --json > avx2.json
+  glint bench scene.toml --frame
+      instead of rays: seconds of the same whole frame on each backend, and which pixels differ
 
 A contestant is timed only if its answers are right: those that differ from Embree's robust mode, and a sample of
 those that all agree on, go before an exact oracle, which knows no tolerance. Of the in-house BVH it excuses what
@@ -169,7 +171,7 @@ Exit code 3: answers of a contestant were wrong.";
 /// `glint bench`.
 #[derive(Debug, Args)]
 pub(super) struct Bench {
-    /// Models (.obj) or scene files (.toml); of materials nothing is read, so that cut-outs are solid
+    /// Models (.obj) or scene files (.toml); for rays nothing is read of materials, so that cut-outs are solid
     #[arg(required = true, value_name = "SCENE")]
     pub(super) scenes: Vec<PathBuf>,
 
@@ -182,6 +184,18 @@ pub(super) struct Bench {
     /// Print nothing but errors, and the JSON if asked for
     #[arg(short, long, help_heading = "Output")]
     pub(super) quiet: bool,
+
+    /// Race whole frames, as `glint render` makes them, not rays; count and list the pixels that differ
+    #[arg(long, conflicts_with_all = ["rays", "kinds", "all_calls"], help_heading = "Frame")]
+    pub(super) frame: bool,
+    /// Size of the frame
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, default_value = "640x360", requires = "frame",
+          help_heading = "Frame")]
+    pub(super) size: [u32; 2],
+    /// Samples per pixel of the frame
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), default_value_t = 16,
+          requires = "frame", help_heading = "Frame")]
+    pub(super) spp: u64,
 
     /// Rays of each kind; k, M and G multiply it
     #[arg(long, value_name = "N", default_value = "131072", value_parser = count, help_heading = "Race")]
@@ -213,7 +227,7 @@ pub(super) struct Bench {
 }
 
 /// How hierarchies are built.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Clone, Copy, Debug, Default, Args)]
 pub(super) struct Build {
     /// Work on the hierarchy that finds what rays hit: fast, default or high; the picture is the same
     #[arg(long, value_name = "NAME", default_value = "default", value_parser = named("quality", &Quality::ALL),
@@ -259,13 +273,14 @@ pub(super) struct Generate {
 }
 
 /// Backends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Backend {
     /// Debian's Embree
     Embree,
     /// The in-house BVH
     Bvh,
     /// The faster one on this machine: the in-house BVH where it has AVX-512
+    #[default]
     Auto,
 }
 
@@ -284,5 +299,17 @@ impl Up {
             Self::Y => DVec3::Y,
             Self::Z => DVec3::Z,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_a_command_line_that_says_nothing() {
+        let said = Glint::try_parse_from(["glint", "render", "a.obj"]).expect("it parses");
+        let nothing = Render { scene: "a.obj".into(), ..Render::default() };
+        assert_eq!(format!("{said:?}"), format!("Glint {{ command: Render({nothing:?}) }}"));
     }
 }

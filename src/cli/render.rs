@@ -1,6 +1,6 @@
 //! `glint render`: a scene file in, a picture out. The newcomer's page: the whole pipeline in order.
 
-use super::args::{Backend, Render, Up};
+use super::args::{Backend, Render};
 use super::output::{Outputs, Picture};
 use super::select::{self, Settings};
 use super::statistics::{Phases, Statistics};
@@ -15,11 +15,9 @@ use crate::camera::Camera;
 use crate::error::{Error, Result};
 use crate::film::Region;
 use crate::filter::FilterSampler;
-use crate::load::{self, LoadOptions};
-#[cfg(feature = "bvh")]
+use crate::load;
 use crate::os::Isa;
 use crate::render::{RenderJob, Rendered, render, render_layers};
-use crate::sampling::Sampler;
 use crate::trace::{Tracer, Wavefront};
 use crate::world::World;
 use signal_hook::consts::TERM_SIGNALS;
@@ -41,14 +39,8 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     let start = Instant::now();
     let busy = progress::busy(args, "loading");
     let outputs = Outputs::check(args)?;
-    let options = LoadOptions {
-        material: args.override_material.clone(),
-        surroundings: select::surroundings(args)?,
-        progress: Some(&|done, total| progress::reading(&busy, done, total)),
-    };
-    let mut scene = load::load_scene_with(&args.scene, options)?;
-    scene.up = args.up.map_or(scene.up, Up::direction);
-    let settings = Settings::resolve(args, &scene.settings)?;
+    let reading = |done, total| progress::reading(&busy, done, total);
+    let (mut scene, settings) = select::scene(args, Some(&reading))?;
     phases.load = start.elapsed().as_secs_f64();
 
     // A scene to a world, and the camera in it.
@@ -85,7 +77,7 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     match chosen {
         #[cfg(feature = "embree")]
         Chosen::Embree => {
-            let embree = EmbreeAccelerator::with_options(geometry, &options)?;
+            let embree = EmbreeAccelerator::with_options(geometry, &options, Isa::detect())?;
             built(&mut phases);
             job.name = ("embree", embree.version());
             finish(&job, &world, &embree, &camera, phases)
@@ -161,13 +153,8 @@ fn finish<A: Accelerator>(
     let settings = job.settings;
     let filter = FilterSampler::new(settings.filter);
     let tracer = Tracer {
-        world,
-        accelerator,
-        camera,
-        filter: &filter,
-        sampler: Sampler::new(settings.sampler, settings.seed),
-        max_depth: settings.max_depth,
         hide_background: job.args.background.is_some(),
+        ..settings.tracer(world, camera, &filter).on(accelerator)
     };
     if let Some((pixel, sample)) = job.args.replay {
         return replay(job, &tracer, pixel, sample);

@@ -40,8 +40,7 @@ pub(super) fn warnings(args: &Render, warnings: &[Warning]) {
 
 /// Says which backend was taken, and why.
 pub(super) fn backend(args: &Render, name: &str) {
-    let widest =
-        Isa::ALL.iter().find(|(_, isa)| *isa == Isa::detect()).map_or("", |(name, _)| name);
+    let widest = Isa::detect().name();
     say(
         args,
         &format!(

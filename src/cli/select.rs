@@ -1,17 +1,18 @@
 //! Command line over scene file over defaults: what a render will really use.
 
-use super::args::Render;
+use super::args::{Render, Up};
 use super::values::{self, Env};
 use crate::camera::{Camera, View, frame_points};
 use crate::error::{Error, Result, unknown_name};
 use crate::film::Region;
-use crate::filter::Filter;
+use crate::filter::{Filter, FilterSampler};
 use crate::image::ToneMap;
-use crate::load::Surroundings;
+use crate::load::{self, LoadOptions, Surroundings};
 use crate::math::{DVec3, Rgb};
 use crate::render::Aov;
-use crate::sampling::SamplerKind;
-use crate::scene::{self, Effects, Projection, SceneSettings};
+use crate::sampling::{Sampler, SamplerKind};
+use crate::scene::{self, Effects, Projection, Scene, SceneSettings};
+use crate::trace::Tracer;
 use crate::world::World;
 
 /// Every setting of a render, resolved.
@@ -54,6 +55,44 @@ impl Settings {
             aovs: args.aov.clone(),
         })
     }
+
+    /// What is traced, but for the accelerator: `on` brings it.
+    pub(super) fn tracer<'a>(
+        &self,
+        world: &'a World,
+        camera: &'a Camera,
+        filter: &'a FilterSampler,
+    ) -> Tracer<'a, ()> {
+        Tracer {
+            world,
+            accelerator: &(),
+            camera,
+            filter,
+            sampler: Sampler::new(self.sampler, self.seed),
+            max_depth: self.max_depth,
+            hide_background: false,
+        }
+    }
+}
+
+/// Reads the scene, with what the command line says over what its file says; and its settings. `progress` is told
+/// bytes read, and bytes in all.
+///
+/// # Errors
+/// What reading a scene can end with; usage errors as [`Settings::resolve`].
+pub(super) fn scene(
+    args: &Render,
+    progress: Option<&dyn Fn(u64, u64)>,
+) -> Result<(Scene, Settings)> {
+    let options = LoadOptions {
+        material: args.override_material.clone(),
+        surroundings: surroundings(args)?,
+        progress,
+    };
+    let mut scene = load::load_scene_with(&args.scene, options)?;
+    scene.up = args.up.map_or(scene.up, Up::direction);
+    let settings = Settings::resolve(args, &scene.settings)?;
+    Ok((scene, settings))
 }
 
 /// What the command line says, or else the scene file by name, or else the default.
@@ -103,7 +142,7 @@ fn check_pixels(args: &Render, [width, height]: [u32; 2]) -> Result<()> {
 ///
 /// # Errors
 /// An image error where it cannot be read.
-pub(super) fn surroundings(args: &Render) -> Result<Option<Surroundings>> {
+fn surroundings(args: &Render) -> Result<Option<Surroundings>> {
     args.env
         .as_ref()
         .map(|env| match env {

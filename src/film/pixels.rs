@@ -84,4 +84,32 @@ impl Pixels {
             variance: vec![Rgb::BLACK; n],
         }
     }
+
+    /// The pixels, in image coordinates, whose radiance or alpha differs in any bit from those of another picture of
+    /// the same region.
+    pub fn differing(&self, other: &Self) -> Vec<[u32; 2]> {
+        let bits = |picture: &Self, i: usize| {
+            (picture.radiance[i].to_array().map(f32::to_bits), picture.alpha[i].to_bits())
+        };
+        let pixels = self.region.iter().enumerate();
+        pixels.filter(|&(i, _)| bits(self, i) != bits(other, i)).map(|(_, pixel)| pixel).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_that_differ_in_any_bit_are_found_where_they_are() {
+        let region = Region { start: [2, 3], end: [5, 7] };
+        let black = Pixels::black(region);
+        assert!(black.differing(&black).is_empty());
+        let mut other = black.clone();
+        other.radiance[region.index([4, 3])].b = -0.0;
+        other.alpha[region.index([2, 6])] = f32::from_bits(1);
+        // What the pixel shows is compared, not how sure it is.
+        other.variance[0] = Rgb::WHITE;
+        assert_eq!(black.differing(&other), [[4, 3], [2, 6]]);
+    }
 }

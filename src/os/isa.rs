@@ -22,6 +22,11 @@ impl Isa {
     pub const ALL: [(&'static str, Self); 3] =
         [("portable", Self::Portable), ("avx2", Self::Avx2), ("avx512", Self::Avx512)];
 
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::ALL[self as usize].0
+    }
+
     /// The widest set of this machine.
     #[inline]
     pub fn detect() -> Self {

@@ -133,7 +133,13 @@ impl<A: Accelerator> Tracer<'_, A> {
     }
 }
 
-impl<A> Tracer<'_, A> {
+impl<'a, A> Tracer<'a, A> {
+    /// The same paths on another accelerator, built from the same geometry.
+    pub fn on<B>(&self, accelerator: &'a B) -> Tracer<'a, B> {
+        let Self { world, camera, filter, sampler, max_depth, hide_background, .. } = *self;
+        Tracer { world, accelerator, camera, filter, sampler, max_depth, hide_background }
+    }
+
     /// What hit filters know a ray by; 0 where no filter will ask.
     #[inline]
     fn ray_id(&self, numbers: &PathSampler, bounce: u32, kind: RayKind) -> u32 {

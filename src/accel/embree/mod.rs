@@ -63,16 +63,18 @@ impl EmbreeAccelerator {
     /// # Errors
     /// Embree's own, in its words: out of memory, unsupported CPU, invalid geometry.
     pub fn build(geometry: Arc<Geometry>, threads: usize) -> Result<Self> {
-        Self::with_options(geometry, &BuildOptions { threads, ..BuildOptions::default() })
+        let options = BuildOptions { threads, ..BuildOptions::default() };
+        Self::with_options(geometry, &options, Isa::detect())
     }
 
-    /// [`EmbreeAccelerator::build`] with more or less work on the hierarchy, or less memory for it.
+    /// [`EmbreeAccelerator::build`] with more or less work on the hierarchy, or less memory for it, for instructions up
+    /// to those of `isa`: other kernels of Embree's may round otherwise.
     ///
     /// # Errors
     /// As there.
-    pub fn with_options(geometry: Arc<Geometry>, options: &BuildOptions) -> Result<Self> {
+    pub fn with_options(geometry: Arc<Geometry>, options: &BuildOptions, isa: Isa) -> Result<Self> {
         let start = Instant::now();
-        let device = Device::new(options.threads, Isa::detect())?;
+        let device = Device::new(options.threads, isa)?;
         let variant = EmbreeVariant::production(options);
         let scene = EmbreeScene::build(&device, &geometry, variant, true)?;
         let seconds = start.elapsed().as_secs_f64();

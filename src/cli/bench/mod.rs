@@ -1,5 +1,7 @@
-//! `glint bench`: scenes in, tables of builds and rays per second out.
+//! `glint bench`: scenes in, tables of builds and rays per second out, or of whole frames.
 
+mod frame;
+mod frame_table;
 mod table;
 
 use super::args::{Bench, Up};
@@ -12,9 +14,10 @@ use crate::image::{check_writable, write_whole};
 use crate::load::{self, LoadOptions, Surroundings};
 use crate::math::Rgb;
 use crate::scene::{self, ColorInput, Environment, Material, Surface};
-use crate::study::bench::{RayKind, Report, Settings, bench, most_threads};
+use crate::study::bench::{DifferingPixels, RayKind, Report, Settings, Tell, bench, most_threads};
 use crate::study::report;
 use crate::world::World;
+use frame::FrameScene;
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::io::{self, Write};
 use std::path::Path;
@@ -32,23 +35,25 @@ pub(super) fn run(args: &Bench) -> Result<u8> {
     // Not after an hour of the others.
     args.scenes.iter().try_for_each(|path| load::check_scene(path))?;
     let mut report = Report::new(command())?;
-    say(args, &table::head(&report, &settings));
+    say(args, &table::head(&report, &about(args, &settings)));
     for (path, n) in args.scenes.iter().zip(1..) {
         let place = match args.scenes.len() {
             1 => String::new(),
             all => format!("scene {n} of {all}, "),
         };
-        let (world, cameras) = load(args, path)?;
-        let bar = bar(args);
-        let tell = |step: &'static str, done: f64| {
-            bar.set_message(format!("{place}{step}"));
-            bar.set_position((done * bar.length().unwrap_or(0) as f64) as u64);
-        };
-        let findings = bench(&path.display().to_string(), &world, &cameras, &settings, &tell);
-        bar.finish_and_clear();
-        let findings = findings?;
-        say(args, &table::findings(&findings));
-        report.add(findings);
+        let name = path.display().to_string();
+        if args.frame {
+            let scene = FrameScene::load(args, path)?;
+            let findings = watched(args, &place, |tell| scene.race(&name, &settings, tell))?;
+            say(args, &frame_table::findings(&findings));
+            report.add_frames(findings);
+        } else {
+            let (world, cameras) = load(args, path)?;
+            let findings =
+                watched(args, &place, |tell| bench(&name, &world, &cameras, &settings, tell))?;
+            say(args, &table::findings(&findings));
+            report.add(findings);
+        }
     }
     if let Some(path) = &args.output {
         let page = report::bench_page(&report);
@@ -65,7 +70,25 @@ pub(super) fn run(args: &Bench) -> Result<u8> {
 
 /// Done, or done but with answers that were wrong.
 fn exit_code(report: &Report) -> u8 {
-    if report.disqualified().next().is_some() { NOT_MET } else { DONE }
+    let is_wrong = report.disqualified().next().is_some()
+        || report.frames.iter().any(|frame| frame.seconds.is_none())
+        || report.differing_pixels.iter().any(DifferingPixels::is_too_many);
+    if is_wrong { NOT_MET } else { DONE }
+}
+
+/// What is raced, in a line.
+fn about(args: &Bench, settings: &Settings) -> String {
+    let ([width, height], spp) = (args.size, args.spp);
+    if args.frame {
+        format!(
+            "Whole frames of {width}x{height}, {spp} samples a pixel, as glint render makes them."
+        )
+    } else {
+        let rays = settings.rays;
+        format!(
+            "Geometry alone: materials are not read, cut-outs are solid. {rays} rays of each kind."
+        )
+    }
 }
 
 /// Prints lines where they do not get in the way of JSON.
@@ -136,14 +159,22 @@ fn load(args: &Bench, path: &Path) -> Result<(World, Vec<scene::Camera>)> {
     Ok((world, cameras))
 }
 
-fn bar(args: &Bench) -> ProgressBar {
-    if args.quiet {
-        return ProgressBar::hidden();
-    }
-    let target = ProgressDrawTarget::stderr_with_hz(5);
-    let bar = ProgressBar::with_draw_target(Some(10_000), target);
+/// Does `work`, and shows meanwhile how far it is; `place` says in which scene.
+fn watched<T>(args: &Bench, place: &str, work: impl FnOnce(Tell<'_>) -> T) -> T {
+    const STEPS: u64 = 10_000;
+    let bar = if args.quiet {
+        ProgressBar::hidden()
+    } else {
+        let target = ProgressDrawTarget::stderr_with_hz(5);
+        ProgressBar::with_draw_target(Some(STEPS), target)
+    };
     bar.set_style(style(&format!("{BAR}  {{msg}}")));
-    bar
+    let outcome = work(&|step, done| {
+        bar.set_message(format!("{place}{step}"));
+        bar.set_position((done * STEPS as f64) as u64);
+    });
+    bar.finish_and_clear();
+    outcome
 }
 
 #[cfg(test)]

@@ -1,26 +1,41 @@
 //! The findings of a bench as tables for a terminal, at most 100 columns wide.
 
 use crate::study::bench::{
-    Agreement, Build, Comparison, Findings, Report, Run, SLOW, Settings, Spread,
+    Agreement, Build, Comparison, Findings, Ratio, Report, Run, SLOW, Scene, Spread,
 };
 
 /// Columns of names.
 const NAMES: usize = 54;
 
-/// On what, and how.
-pub(super) fn head(report: &Report, settings: &Settings) -> String {
+/// On what, and what is raced.
+pub(super) fn head(report: &Report, about: &str) -> String {
     let machine = &report.machine;
     let embree = machine.embree.as_ref().map_or(String::new(), |v| format!(", Embree {v}"));
     format!(
-        "{}, {} threads; glint {}{embree}; {}\n\
-         Geometry alone: materials are not read, cut-outs are solid. {} rays of each kind.",
-        machine.cpu, machine.threads, report.version, machine.date, settings.rays
+        "{}, {} threads; glint {}{embree}; {}\n{about}",
+        machine.cpu, machine.threads, report.version, machine.date
     )
 }
 
 /// Everything about a scene.
 pub(super) fn findings(findings: &Findings) -> String {
-    let scene = &findings.scene;
+    let mut lines = scene(&findings.scene);
+    lines.push(findings.scene.verdict());
+    builds(&findings.builds, &mut lines);
+    for (i, run) in findings.runs.iter().enumerate() {
+        let before = i.checked_sub(1).map(|i| &findings.runs[i]);
+        if before.is_none_or(|b| (b.ray_kind, b.threads) != (run.ray_kind, run.threads)) {
+            heading(findings, run, &mut lines);
+        }
+        lines.push(row(findings, run));
+    }
+    busy(findings.runs.iter().map(|run| run.busy_turns).sum(), &mut lines);
+    summary(findings, &mut lines);
+    lines.join("\n")
+}
+
+/// The scene, how often it was raced on, and how busy the machine was.
+pub(super) fn scene(scene: &Scene) -> Vec<String> {
     let mut lines = vec![
         String::new(),
         format!(
@@ -47,21 +62,10 @@ pub(super) fn findings(findings: &Findings) -> String {
             probe.max
         ));
     }
-    lines.push(scene.verdict());
-    builds(&findings.builds, &mut lines);
-    for (i, run) in findings.runs.iter().enumerate() {
-        let before = i.checked_sub(1).map(|i| &findings.runs[i]);
-        if before.is_none_or(|b| (b.ray_kind, b.threads) != (run.ray_kind, run.threads)) {
-            heading(findings, run, &mut lines);
-        }
-        lines.push(row(findings, run));
-    }
-    busy(&findings.runs, &mut lines);
-    summary(findings, &mut lines);
-    lines.join("\n")
+    lines
 }
 
-fn threads(n: usize) -> String {
+pub(super) fn threads(n: usize) -> String {
     if n == 1 { "1 thread".into() } else { format!("{n} threads") }
 }
 
@@ -108,7 +112,7 @@ fn row(findings: &Findings, run: &Run) -> String {
     let name = format!("  {} {isa}{}", run.backend, run.variant);
     let against = |which: &str| {
         let ratio = findings.ratios.iter().find(|r| is_of(r, run) && r.against == which);
-        ratio.map_or(String::new(), times)
+        ratio.map_or(String::new(), |r| times(&r.ratio))
     };
     let Some(speed) = &run.rays_per_second else {
         return format!("{name:NAMES$} WRONG: {}", answers(&run.agreement));
@@ -131,9 +135,9 @@ fn rate(speed: &Spread) -> String {
 }
 
 /// A ratio, marked where it is a tie.
-fn times(comparison: &Comparison) -> String {
-    let mark = if comparison.ratio.tie { "~" } else { "" };
-    format!("{mark}{:.2}x", comparison.ratio.median)
+pub(super) fn times(ratio: &Ratio) -> String {
+    let mark = if ratio.tie { "~" } else { "" };
+    format!("{mark}{:.2}x", ratio.median)
 }
 
 /// What differs from the reference, in words.
@@ -161,8 +165,8 @@ fn answers(agreement: &Agreement) -> String {
     }
 }
 
-fn busy(runs: &[Run], lines: &mut Vec<String>) {
-    let turns: usize = runs.iter().map(|run| run.busy_turns).sum();
+/// Says so if `turns` were timed on a busy machine.
+pub(super) fn busy(turns: usize, lines: &mut Vec<String>) {
     if turns > 0 {
         lines.push(String::new());
         lines.push(format!(
@@ -191,7 +195,7 @@ fn summary(findings: &Findings, lines: &mut Vec<String>) {
                 let mut all = findings.ratios.iter().filter(ours);
                 let found = all
                     .find(|r| (r.ray_kind, r.threads, r.against) == (count.ray_kind, n, against));
-                line += &format!(" {:>width$}", found.map_or("-".into(), times));
+                line += &format!(" {:>width$}", found.map_or("-".into(), |r| times(&r.ratio)));
             }
         }
         lines.push(line);

@@ -3,8 +3,9 @@
 //! What is done, in order: every structure is built several times; rays of every kind are made from the
 //! scene; each of Embree's calls for several rays is tried on a sample (the heats), and the best two go on;
 //! every answer of every contestant is compared with those of Embree's robust mode, and the exact oracle judges those
-//! that differ and some of those that do not; whoever was right races (`race`): turns on the same rays in rotating order, medians over repetitions, and
-//! differences inside the noise called ties. Must not print.
+//! that differ and some of those that do not; whoever was right races (`race`): turns on the same rays in rotating
+//! order, medians over repetitions, and differences inside the noise called ties. Beside it, whole frames (`frame`):
+//! their seconds, and the pixels that differ. Must not print.
 
 mod agreement;
 mod builds;
@@ -15,6 +16,8 @@ mod crew;
 #[cfg(feature = "embree")]
 mod embree;
 mod field;
+mod frame;
+mod frame_result;
 mod in_house;
 mod judge;
 mod machine;
@@ -29,6 +32,8 @@ pub use agreement::Agreement;
 pub use contest::contest;
 pub use contestant::{Answer, Batch, Contestant, Law, Role, Tracer};
 pub use course::BATCH;
+pub use frame::{FrameSettings, Renderer, frame, frames};
+pub use frame_result::{DifferingPixels, Frame, FrameFindings, FrameRatio};
 pub use in_house::InHouse;
 pub use judge::Judging;
 pub use machine::most_threads;

@@ -47,6 +47,29 @@ pub(super) struct Plan<'p> {
     pub(super) time: Duration,
 }
 
+impl Plan<'_> {
+    /// Whether to stop after so many repetitions, which took `spent` seconds.
+    pub(super) fn is_over(&self, repetitions: usize, spent: f64) -> bool {
+        let each = spent / repetitions.max(1) as f64;
+        match self.repetitions {
+            Some(wanted) => repetitions >= wanted,
+            None => {
+                let late = spent + each > self.time.as_secs_f64();
+                repetitions >= FEWEST_REPETITIONS && late || repetitions >= MOST_REPETITIONS
+            }
+        }
+    }
+
+    /// How much is done of it, from 0 to 1, after so many repetitions (with parts of one) and `spent` seconds.
+    pub(super) fn done(&self, repetitions: f64, spent: f64) -> f64 {
+        // The fewest repetitions may take longer than the time there is.
+        let by_time = || {
+            (repetitions / FEWEST_REPETITIONS as f64).min(spent / self.time.as_secs_f64().max(1e-9))
+        };
+        self.repetitions.map_or_else(by_time, |wanted| repetitions / wanted as f64).min(1.0)
+    }
+}
+
 /// What there is to tell of a race besides the times.
 pub(super) struct Story {
     pub(super) repetitions: usize,
@@ -87,32 +110,15 @@ pub(super) fn race(
     let turns: usize = starts.iter().map(|start| turns_of(start, field)).sum();
     let mut turns_run = 0;
     while starts.iter().any(|start| !start.entries.is_empty()) {
-        let spent = begin.elapsed().as_secs_f64();
-        let each = spent / story.repetitions.max(1) as f64;
-        let is_over = match plan.repetitions {
-            Some(wanted) => story.repetitions >= wanted,
-            None => {
-                let late = spent + each > plan.time.as_secs_f64();
-                let enough = story.repetitions >= FEWEST_REPETITIONS;
-                enough && late || story.repetitions >= MOST_REPETITIONS
-            }
-        };
-        if is_over {
+        if plan.is_over(story.repetitions, begin.elapsed().as_secs_f64()) {
             break;
         }
         for start in starts.iter_mut() {
             for (slot, &threads) in plan.threads.iter().enumerate() {
                 let place = Place { slot, threads };
                 repetition(field, start, place, &mut story, turns_run, &mut |done| {
-                    let done = (turns_run + done) as f64 / turns as f64;
-                    let by_count = plan.repetitions.map(|wanted| done / wanted as f64);
-                    let seconds = begin.elapsed().as_secs_f64();
-                    let by_time = || {
-                        // The fewest repetitions may take longer than the time there is.
-                        let fewest = done / FEWEST_REPETITIONS as f64;
-                        fewest.min(seconds / plan.time.as_secs_f64())
-                    };
-                    tell("racing", by_count.unwrap_or_else(by_time).min(1.0));
+                    let repetitions = (turns_run + done) as f64 / turns as f64;
+                    tell("racing", plan.done(repetitions, begin.elapsed().as_secs_f64()));
                 });
                 turns_run += field.turns(start.event.set) * start.entries.len();
             }

@@ -4,6 +4,7 @@
 //! says where an entry belongs.
 
 use super::agreement::Agreement;
+use super::frame_result::{DifferingPixels, Frame, FrameFindings, FrameRatio};
 use super::judge::Judging;
 use super::sample::Sample;
 use super::statistics::{Ratio, Spread};
@@ -30,6 +31,12 @@ pub struct Report {
     pub runs: Vec<Run>,
     /// The in-house BVH against Embree.
     pub ratios: Vec<Comparison>,
+    /// Whole frames; with them there is none of the four lists before.
+    pub frames: Vec<Frame>,
+    /// The in-house BVH against Embree, whole frames.
+    pub frame_ratios: Vec<FrameRatio>,
+    /// Where the pictures of both differ.
+    pub differing_pixels: Vec<DifferingPixels>,
 }
 
 /// Where a bench ran.
@@ -227,6 +234,9 @@ impl Report {
             heats: Vec::new(),
             runs: Vec::new(),
             ratios: Vec::new(),
+            frames: Vec::new(),
+            frame_ratios: Vec::new(),
+            differing_pixels: Vec::new(),
         })
     }
 
@@ -242,6 +252,14 @@ impl Report {
         self.heats.extend(other.heats);
         self.runs.extend(other.runs);
         self.ratios.extend(other.ratios);
+    }
+
+    /// Adds the findings of frames of another scene.
+    pub fn add_frames(&mut self, other: FrameFindings) {
+        self.scenes.push(other.scene);
+        self.frames.extend(other.frames);
+        self.frame_ratios.extend(other.ratios);
+        self.differing_pixels.extend(other.differing_pixels);
     }
 }
 

@@ -1,8 +1,9 @@
 //! The page of `glint bench`: for each scene what was built, who won by how much, and bars for every race.
 
 use super::bars::{Bar, Chart};
+use super::frames;
 use super::html::Html;
-use crate::study::bench::{Agreement, Build, Comparison, Report, Run, SLOW, Scene};
+use crate::study::bench::{Agreement, Build, Comparison, Ratio, Report, Run, SLOW, Scene};
 
 /// The findings as a page.
 pub fn bench_page(report: &Report) -> String {
@@ -18,7 +19,8 @@ pub fn bench_page(report: &Report) -> String {
         ),
     );
     html.markup("<p class=\"soft\">").element("code", &[], &report.command).markup("</p>\n");
-    html.element("p", &[("class", &"soft")], NOTES);
+    let notes = if report.frames.is_empty() { NOTES } else { frames::NOTES };
+    html.element("p", &[("class", &"soft")], notes);
     for scene in &report.scenes {
         section(&mut html, report, scene);
     }
@@ -82,9 +84,10 @@ fn section(html: &mut Html, report: &Report, scene: &Scene) {
         }
         html.markup("</div>\n");
     }
+    frames::section(html, report, scene);
 }
 
-fn threads(n: usize) -> String {
+pub(super) fn threads(n: usize) -> String {
     if n == 1 { "1 thread".into() } else { format!("{n} threads") }
 }
 
@@ -135,7 +138,12 @@ fn summary(html: &mut Html, scene: &Scene, ratios: &[&Comparison]) {
 }
 
 fn cell(html: &mut Html, comparison: Option<&Comparison>) {
-    let Some(Comparison { ratio, rival, .. }) = comparison else {
+    ratio_cell(html, comparison.map(|found| (&found.ratio, found.rival.as_str())));
+}
+
+/// A cell of a table with a ratio to a rival, if there is one.
+pub(super) fn ratio_cell(html: &mut Html, found: Option<(&Ratio, &str)>) {
+    let Some((ratio, rival)) = found else {
         html.element("td", &[], "-");
         return;
     };

@@ -5,6 +5,7 @@
 
 mod bars;
 mod bench;
+mod frames;
 mod html;
 
 pub use bench::bench_page;

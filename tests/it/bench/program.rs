@@ -2,7 +2,7 @@
 
 use crate::support::program::Bench;
 use crate::support::schema::{faults, not_promised, schema};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 
 /// Quick: few rays, taken twice.
@@ -36,7 +36,11 @@ fn the_schema_names_what_scripts_rely_on() {
         runs/[]/agreement/ties runs/[]/agreement/unexplained runs/[]/agreement/reference_wrong \
         scenes/[]/rays/[]/agreed/judged scenes/[]/rays/[]/agreed/wrong scenes/[]/oracle/judged \
         scenes/[]/oracle/build_seconds scenes/[]/oracle/judge_seconds builds/[]/backend builds/[]/variant \
-        builds/[]/seconds builds/[]/bytes machine/cpu machine/threads machine/date";
+        builds/[]/seconds builds/[]/bytes machine/cpu machine/threads machine/date \
+         frames/[]/scene frames/[]/backend frames/[]/variant frames/[]/isa frames/[]/threads frames/[]/size \
+         frames/[]/samples_per_pixel frames/[]/seconds/median frames/[]/seconds/min frames/[]/seconds/max \
+         frames/[]/rays_per_second frame_ratios/[]/ratio/median frame_ratios/[]/ratio/tie \
+         differing_pixels/[]/count differing_pixels/[]/all differing_pixels/[]/pixels";
     assert_eq!(not_promised(&schema("bench"), promised), Vec::<String>::new());
 }
 
@@ -119,6 +123,78 @@ fn tables_go_to_stdout_unless_asked_not_to() {
     assert_eq!((code, out.as_str(), said.as_str()), (0, "", ""));
 }
 
+/// Quick: a small frame, rendered twice.
+const QUICK_FRAME: [&str; 9] =
+    ["--frame", "--size", "32x18", "--spp", "2", "--repetitions", "2", "--threads", "1,2"];
+
+#[test]
+fn frames_of_two_scenes_are_told_in_json_and_on_a_page() {
+    let folder = folder();
+    let scenes = ["a<b>&'c'.obj", "twice.toml"];
+    let (code, out, said) =
+        bench(&folder, &[&scenes[..], &QUICK_FRAME, &["--json", "-o", "r.html"]].concat());
+    assert_eq!(code, 0, "{said}");
+    let report: Value = serde_json::from_str(&out).expect("JSON alone on stdout");
+    assert_eq!(faults(&schema("bench"), &report, ""), Vec::<String>::new());
+
+    let frames = report["frames"].as_array().unwrap();
+    let names: Vec<_> = frames
+        .iter()
+        .map(|f| (f["scene"].as_str(), f["threads"].as_u64(), f["backend"].as_str()))
+        .collect();
+    let backends: &[&str] = if cfg!(feature = "bvh") { &["embree", "bvh"] } else { &["embree"] };
+    let expected: Vec<_> = scenes
+        .into_iter()
+        .flat_map(|scene| [1, 2].map(|threads| (scene, threads)))
+        .flat_map(|(scene, n)| backends.iter().map(move |b| (Some(scene), Some(n), Some(*b))))
+        .collect();
+    assert_eq!(names, expected);
+    for frame in frames {
+        assert!(frame["seconds"]["median"].as_f64() > Some(0.0), "{frame}");
+        // Two paths in each pixel, and most of them meet something.
+        assert!(frame["rays"].as_u64() > Some(32 * 18 * 2), "{frame}");
+        assert_eq!((&frame["size"][0], &frame["size"][1]), (&32.into(), &18.into()));
+        assert_eq!(frame["samples_per_pixel"], 2);
+    }
+    // No race of rays beside.
+    assert!(["runs", "builds", "heats", "ratios"].iter().all(|list| report[list] == json!([])));
+    let pairs = if cfg!(feature = "bvh") { 2 } else { 0 };
+    assert_eq!(report["frame_ratios"].as_array().unwrap().len(), 2 * pairs);
+    assert_eq!(report["differing_pixels"].as_array().unwrap().len(), pairs);
+    for differing in report["differing_pixels"].as_array().unwrap() {
+        let listed = differing["pixels"].as_array().unwrap().len();
+        assert_eq!((&differing["count"], &differing["all"]), (&listed.into(), &(32 * 18).into()));
+    }
+
+    for words in ["32x18, 2 spp", "seconds (min-max)", "M rays/s", "embree", "twice.toml"] {
+        assert!(said.contains(words), "no `{words}` in {said}");
+    }
+    assert_eq!(said.contains("pixels that differ between embree and bvh:"), pairs > 0, "{said}");
+    assert!(said.lines().all(|line| line.chars().count() < 120), "{said}");
+    let page = fs::read_to_string(folder.path("r.html")).unwrap();
+    assert!(page.contains("Frame of 32x18, 2 samples a pixel") && !page.contains("a<b>"));
+    // A chart for each scene and number of threads.
+    assert_eq!(page.matches("<svg").count(), 2 * 2);
+}
+
+/// A red square and a green one an ulp behind it: each backend sees another one.
+#[cfg(feature = "bvh")]
+#[test]
+fn frames_with_too_many_pixels_that_differ_exit_with_3() {
+    let folder = folder();
+    let square = |z: f32| {
+        let corners = [(-1, -1, z), (1, -1, z + 0.3), (1, 1, z + 0.7), (-1, 1, z + 0.4)];
+        corners.map(|(x, y, z)| format!("v {x} {y} {z}\n")).concat()
+    };
+    let (front, back) = (square(0.0), square(f32::EPSILON));
+    folder.file("tie.mtl", "newmtl red\nKd 1 0 0\nnewmtl green\nKd 0 1 0\n");
+    let red = format!("mtllib tie.mtl\nusemtl red\n{front}f -4 -3 -2\nf -4 -2 -1\n");
+    folder.file("tie.obj", format!("{red}usemtl green\n{back}f -4 -3 -2\nf -4 -2 -1\n"));
+    let (code, out, said) = bench(&folder, &[&["tie.obj"], &QUICK_FRAME[..]].concat());
+    assert_eq!(code, 3, "{out}{said}");
+    assert!(out.contains("MANY: more than 0.2 %"), "{out}");
+}
+
 #[test]
 fn wrong_usage_exits_with_2_and_other_errors_with_1() {
     let folder = folder();
@@ -131,6 +207,11 @@ fn wrong_usage_exits_with_2_and_other_errors_with_1() {
         (&["twice.toml", "--threads", "1,many"], 2, "0 to 1024"),
         (&["twice.toml", "--isa", "neon"], 2, "avx2"),
         (&["twice.toml", "--repetitions", "0"], 2, "1..=1000"),
+        (&["twice.toml", "--spp", "4"], 2, "--frame"),
+        (&["twice.toml", "--size", "32x18"], 2, "--frame"),
+        (&["twice.toml", "--frame", "--size", "32"], 2, "1280x720"),
+        (&["twice.toml", "--frame", "--kinds", "primary"], 2, "cannot be used with"),
+        (&["twice.toml", "--frame", "--rays", "1k"], 2, "cannot be used with"),
         (&[], 2, "SCENE"),
         (&["none.obj"], 1, "none.obj"),
         // Before the first one is raced.

@@ -36,6 +36,14 @@ pub(crate) fn faults(schema: &Value, value: &Value, place: &str) -> Vec<String> 
                     found.push(format!("{place}: {value} is less than {rule}"));
                 }
             }
+            "minItems" | "maxItems" => {
+                let length = value.as_array().map(|entries| entries.len() as u64);
+                let (length, limit) = (length.unwrap_or_default(), rule.as_u64().unwrap_or(0));
+                let holds = if keyword == "minItems" { length >= limit } else { length <= limit };
+                if value.is_array() && !holds {
+                    found.push(format!("{place}: {length} entries, {keyword} {limit}"));
+                }
+            }
             "required" => {
                 let names = rule.as_array().expect("a list").iter().filter_map(Value::as_str);
                 let missing = names.filter(|name| value.is_object() && value.get(name).is_none());
