@@ -10,7 +10,6 @@ use super::sample::sample;
 use super::statistics::{Ratio, Spread};
 use super::{Settings, Tell};
 use crate::geometry::Geometry;
-use crate::os::Isa;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -118,10 +117,6 @@ fn heat(name: &str, contestant: &Contestant<'_>, event: &Event<'_>, time: &HeatT
     }
 }
 
-fn isa_name(isa: Isa) -> &'static str {
-    Isa::ALL.iter().find(|(_, known)| *known == isa).map_or("", |(name, _)| name)
-}
-
 fn runs(
     name: &str,
     contestants: &[Contestant<'_>],
@@ -135,7 +130,7 @@ fn runs(
             scene: name.to_owned(),
             backend: contestant.backend,
             variant: contestant.variant.clone(),
-            isa: isa_name(contestant.isa),
+            isa: contestant.isa.name(),
             threads: settings.threads[slot],
             ray_kind: start.event.set.kind.name(),
             // No time without agreement.
@@ -178,7 +173,7 @@ fn ratios(
                     scene: name.to_owned(),
                     ray_kind: start.event.set.kind.name(),
                     threads,
-                    isa: isa_name(ours.isa),
+                    isa: ours.isa.name(),
                     variant: ours.variant.clone(),
                     against,
                     rival: contestants[rival.contestant].variant.clone(),
