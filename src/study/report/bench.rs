@@ -66,7 +66,9 @@ fn section(html: &mut Html, report: &Report, scene: &Scene) {
             ),
         );
     }
-    html.element("p", &[("class", &"soft")], scene.verdict());
+    if !scene.rays.is_empty() {
+        html.element("p", &[("class", &"soft")], scene.verdict());
+    }
     let ratios: Vec<_> = report.ratios.iter().filter(|r| of_scene(&r.scene)).collect();
     summary(html, scene, &ratios);
     let built: Vec<_> = report.builds.iter().filter(|b| of_scene(&b.scene)).collect();
