@@ -19,6 +19,11 @@ impl Quality {
     /// Every quality with its name, lowest first.
     pub const ALL: [(&'static str, Self); 3] =
         [("fast", Self::Fast), ("default", Self::Default), ("high", Self::High)];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::ALL[self as usize].0
+    }
 }
 
 /// How a hierarchy is built.
@@ -28,7 +33,15 @@ pub struct BuildOptions {
     pub threads: usize,
     /// How much work to spend on it.
     pub quality: Quality,
-    /// Whether memory matters more than speed. The in-house BVH then keeps of each leaf only the numbers of its
-    /// triangles, and gathers their corners whenever a ray visits it; Embree shares vertices with the mesh.
+    /// Whether memory matters more than speed. The in-house BVH then keeps of each leaf which triangles it is made of, and
+    /// gathers their corners whenever a ray visits it; Embree shares vertices with the mesh.
     pub is_compact: bool,
+}
+
+impl BuildOptions {
+    /// Quality and kind, such as "high compact".
+    pub fn name(&self) -> String {
+        let compact = if self.is_compact { " compact" } else { "" };
+        format!("{}{compact}", self.quality.name())
+    }
 }

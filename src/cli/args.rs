@@ -163,10 +163,12 @@ Examples:
       instead of rays: seconds of the same whole frame on each backend, and which pixels differ
 
 A contestant is timed only if its answers are right: those that differ from Embree's robust mode, and a sample of
-those that all agree on, go before an exact oracle, which knows no tolerance. Of the in-house BVH it excuses what
-the rounding of its kernel is proven to be worth. Embree may choose freely among what is equally near, or an ulp
-behind, and be wrong once in 10 000 rays.
-Exit code 3: answers of a contestant were wrong.";
+those that all agree on, go before an exact oracle, which knows no tolerance. It excuses what the rounding of the
+in-house BVH's kernel is proven to be worth. Embree may besides choose freely among what is equally near, or an ulp
+behind, and be wrong once in 10 000 rays. Of whole frames, only the bytes are compared.
+--quality and --low-memory are for the in-house BVH; with --frame, for Embree as well.
+Exit code 3: answers of a contestant were wrong; a frame changed from one time to the next; or more than 0.2 % of
+its pixels differ between the backends (at 16 samples a pixel; more at more).";
 
 /// `glint bench`.
 #[derive(Debug, Args)]

@@ -235,6 +235,7 @@ fn who_is_wrong_together_is_found_out_by_the_oracle() {
     let tell = |step, _| steps.borrow_mut().push(step);
     let findings = contest("test", &world.geometry, &sets, &contestants, &settings(&[1]), &tell);
     assert!(findings.runs.iter().all(|run| run.agreement.differing() == 0));
+    assert!(findings.runs.iter().all(|run| run.rays_per_second.is_none()));
     for count in &findings.scene.rays {
         let Sample { judged, wrong } = count.agreed;
         assert_eq!(judged, 1000);
@@ -250,6 +251,29 @@ fn who_is_wrong_together_is_found_out_by_the_oracle() {
     assert!(first("building the oracle") < first("racing"));
     assert_eq!(steps.iter().filter(|step| **step == "building the oracle").count(), 1);
     assert_eq!(findings.scene.oracle.judged, 6000);
+}
+
+/// The reference agrees with itself; whoever is right finds it out.
+#[test]
+fn a_reference_that_lies_is_found_out_by_the_others() {
+    let world = world(Kind::City, 5000);
+    let backend = Backend::build(world.geometry.clone(), 1).expect("it builds");
+    let sets = ray_sets(&world, &backend, 3000);
+    let lie = |id: PrimitiveId| (!id.primitive.is_multiple_of(5)).then_some(id);
+    let loses = Liar { backend: &backend, lie, honest_calls: 0.into() };
+    let baseline =
+        Contestant { role: Role::Baseline, ..contestant(&loses, "loses", Law::Approximate) };
+    let contestants = [baseline, contestant(&backend, "honest", Law::Exact)];
+    for run in race(&world, &sets, &contestants).runs {
+        let agreement = run.agreement;
+        if run.variant == "loses" {
+            assert!(agreement.unexplained > 20, "{}: {agreement:?}", run.ray_kind);
+            assert_eq!(run.rays_per_second, None);
+        } else {
+            assert!(agreement.reference_wrong > 20 && agreement.unexplained == 0, "{agreement:?}");
+            assert!(run.rays_per_second.is_some());
+        }
+    }
 }
 
 #[test]

@@ -18,8 +18,8 @@ pub(super) const VERTICES: usize = 9;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(128))]
 pub(super) struct Block {
-    /// Eight vertices along x, along y and along z, then the ninth: no vector of eight crosses a cache line. Zeros where
-    /// there is none.
+    /// Eight vertices along x, along y and along z, then the ninth: no vector of eight crosses a cache line. Any numbers
+    /// where there is none.
     positions: [f32; 3 * VERTICES],
     /// For each triangle the numbers of its three vertices, four bits each, the first one lowest. Absent ones have those of
     /// the first triangle, and the sign.

@@ -104,7 +104,8 @@ impl Hierarchy {
         // nothing.
         let memory = || backend_error("not enough memory for the hierarchy");
         let trees = geometry.objects.len() + 2;
-        let units = 2 * triangles + instances + trees;
+        let per_triangle = if options.is_compact { 1 } else { 2 };
+        let units = per_triangle * triangles + instances + trees;
         let [kept, gathered] = if options.is_compact { [0, triangles] } else { [triangles, 0] };
         let mut all = Self {
             units: Arena::zeroed(units).ok_or_else(memory)?,
@@ -263,11 +264,12 @@ impl Hierarchy {
         let (order, first) = (&tree.order, self.places);
         let root = if self.is_compact {
             let leaves = Reference::new(Kind::Leaf, first);
-            for (start, end) in wide.leaf_ranges(&tree.nodes) {
-                let triangles = &order[start as usize..end as usize];
-                self.recipes[self.places] = Recipe::new(&meshes, triangles);
-                self.places += 1;
-            }
+            self.places += wide.leaves;
+            let ranges: Vec<_> = wide.leaf_ranges(&tree.nodes).collect();
+            let recipes = self.recipes[first..self.places].par_iter_mut();
+            recipes.zip(&ranges).for_each(|(recipe, &(start, end))| {
+                *recipe = Recipe::new(&meshes, &order[start as usize..end as usize]);
+            });
             self.add_tree(&tree.nodes, &wide, &Leaves::Elsewhere(leaves))?
         } else {
             self.triangles[first..first + order.len()].copy_from_slice(order);

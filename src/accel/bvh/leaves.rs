@@ -38,7 +38,7 @@ pub(super) struct Kept;
 impl Leaves for Kept {
     #[inline(always)]
     fn block<'a>(bvh: &'a Bvh, leaf: Reference, _: u32, _: &'a mut Option<Block>) -> &'a Block {
-        // SAFETY: `Bvh::run` chooses to read leaves so where the hierarchy is not compact.
+        // SAFETY: who makes a `Batch` answers for it that the hierarchy is not compact.
         unsafe { bvh.hierarchy.block(leaf) }
     }
 
@@ -112,7 +112,7 @@ impl Bvh {
             None => &geometry.meshes,
         };
         let numbers = &hierarchy.tree_of(geometry, instance).numbers;
-        // SAFETY: `Bvh::run` chooses to read leaves so where the hierarchy is compact.
+        // SAFETY: who makes a `Batch` answers for it that the hierarchy is compact.
         (unsafe { hierarchy.recipe(leaf) }, Meshes::new(meshes, numbers))
     }
 }

@@ -34,7 +34,7 @@ use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
 use answers::{Answers, Blocked, FewHits, Hits, Ignored};
 use hierarchy::Hierarchy;
 use kernel::Count;
-use leaves::{Gathered, Kept, Leaves};
+use leaves::{Gathered, Kept};
 use node::Reference;
 use slot::Found;
 use std::cell::Cell;
@@ -86,24 +86,24 @@ impl Bvh {
     /// What it takes to find the closest hits of `rays`, or if `any`, whether they hit anything.
     pub fn steps<F: HitFilter>(&self, rays: &[Ray], filter: &F, any: bool) -> Steps {
         let steps = Cell::new(Steps::default());
-        match (any, self.hierarchy.is_compact) {
-            (false, false) => self.count::<_, Kept, false>(rays, filter, &steps),
-            (true, false) => self.count::<_, Kept, true>(rays, filter, &steps),
-            (false, true) => self.count::<_, Gathered, false>(rays, filter, &steps),
-            (true, true) => self.count::<_, Gathered, true>(rays, filter, &steps),
+        match any {
+            false => self.count::<_, false>(rays, filter, &steps),
+            true => self.count::<_, true>(rays, filter, &steps),
         }
         steps.get()
     }
 
-    fn count<F: HitFilter, L: Leaves, const ANY: bool>(
-        &self,
-        rays: &[Ray],
-        filter: &F,
-        steps: &Cell<Steps>,
-    ) {
+    fn count<F: HitFilter, const ANY: bool>(&self, rays: &[Ray], filter: &F, steps: &Cell<Steps>) {
         let answers = &mut Ignored;
-        let task = Batch::<_, _, L, ANY>::new(self, rays, filter, answers);
-        kernel::dispatch(Count { task, steps });
+        if self.hierarchy.is_compact {
+            // SAFETY: the hierarchy is compact.
+            let task = unsafe { Batch::<_, _, Gathered, ANY>::new(self, rays, filter, answers) };
+            kernel::dispatch(Count { task, steps });
+        } else {
+            // SAFETY: the hierarchy is not compact.
+            let task = unsafe { Batch::<_, _, Kept, ANY>::new(self, rays, filter, answers) };
+            kernel::dispatch(Count { task, steps });
+        }
     }
 
     /// Does what is asked about rays, for the way in which leaves are kept.
@@ -114,11 +114,14 @@ impl Bvh {
         filter: &F,
         answers: &mut A,
     ) {
-        match self.hierarchy.is_compact {
-            false => kernel::dispatch(Batch::<_, _, Kept, ANY>::new(self, rays, filter, answers)),
-            true => {
-                kernel::dispatch(Batch::<_, _, Gathered, ANY>::new(self, rays, filter, answers))
-            }
+        if self.hierarchy.is_compact {
+            // SAFETY: the hierarchy is compact.
+            let task = unsafe { Batch::<_, _, Gathered, ANY>::new(self, rays, filter, answers) };
+            kernel::dispatch(task);
+        } else {
+            // SAFETY: the hierarchy is not compact.
+            let task = unsafe { Batch::<_, _, Kept, ANY>::new(self, rays, filter, answers) };
+            kernel::dispatch(task);
         }
     }
 

@@ -26,7 +26,14 @@ pub(super) struct Batch<'a, F, A, L, const ANY: bool> {
 }
 
 impl<'a, F: HitFilter, A, L: Leaves, const ANY: bool> Batch<'a, F, A, L, ANY> {
-    pub(super) fn new(bvh: &'a Bvh, rays: &'a [Ray], filter: &'a F, answers: &'a mut A) -> Self {
+    /// # Safety
+    /// `L` must be the way in which this hierarchy's leaves are kept.
+    pub(super) unsafe fn new(
+        bvh: &'a Bvh,
+        rays: &'a [Ray],
+        filter: &'a F,
+        answers: &'a mut A,
+    ) -> Self {
         Self { bvh, rays, filter, answers, leaves: PhantomData }
     }
 

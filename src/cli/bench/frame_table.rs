@@ -73,7 +73,8 @@ fn differing(pixels: &DifferingPixels, lines: &mut Vec<String>) {
         lines.push(format!(
             "MANY: more than {} %. Are there surfaces in the same place, so that each backend sees another one,\n\
              or thin things everywhere and many samples? If not, one of the two misses something.",
-            100.0 * pixels.most()
+            // Two decimals, and no zeros behind.
+            (1e4 * pixels.most()).round() / 100.0
         ));
     }
 }

@@ -28,7 +28,8 @@ pub struct Agreement {
     pub different: usize,
     /// Of all these, those where the reference is wrong and the contestant is not.
     pub reference_wrong: usize,
-    /// Of all these, those where the contestant is wrong: what no rounding explains.
+    /// Those where the contestant is wrong: what its law does not allow. Of the reference itself, all rays on which it was
+    /// found out by anybody.
     pub unexplained: usize,
     /// Timed turns whose answers were not those that had been compared.
     pub unsteady_turns: usize,
@@ -73,8 +74,16 @@ struct Difference {
     id: PrimitiveId,
 }
 
-/// Compares the `answers` of a contestant held to `law`; also tells the places of the rays on which they differ.
-/// `witness` is asked for the closest primitive that the contestant finds on a ray, where it said only that
+/// What came of a comparison.
+pub(super) struct Compared {
+    pub(super) agreement: Agreement,
+    /// Places of the rays that were answered otherwise, in order.
+    pub(super) differing: Vec<usize>,
+    /// Of these, those where the reference is wrong, whoever else is.
+    pub(super) reference_wrong: Vec<usize>,
+}
+
+/// Compares the `answers` of a contestant held to `law` with the reference. `witness` is asked for the closest primitive that the contestant finds on a ray, where it said only that
 /// something is hit.
 pub(super) fn compare(
     judge: &mut Judge<'_>,
@@ -82,7 +91,7 @@ pub(super) fn compare(
     answers: &[Answer],
     law: Law,
     witness: &dyn Fn(&Ray) -> PrimitiveId,
-) -> (Agreement, Vec<usize>) {
+) -> Compared {
     let mut differences = Vec::new();
     for (place, (reference, answer)) in asked.reference.iter().zip(answers).enumerate() {
         let same = match asked.query {
@@ -102,6 +111,7 @@ pub(super) fn compare(
     let judgements = judge.judge(&cases.collect::<Vec<_>>());
 
     let mut agreement = Agreement { compared: asked.rays.len(), ..Agreement::default() };
+    let mut reference_wrong = Vec::new();
     for (difference, pair) in differences.iter().zip(judgements.chunks_exact(2)) {
         let [theirs, its] = [&pair[0], &pair[1]];
         match (asked.reference[difference.place].is_hit(), difference.hit) {
@@ -115,13 +125,15 @@ pub(super) fn compare(
         }
         // Something is hit that the contestant itself cannot name.
         let is_unnamed = difference.hit && difference.id == PrimitiveId::MISS;
-        if is_unnamed || !law.allows(its) {
-            agreement.unexplained += 1;
-        } else if !asked.law.allows(theirs) {
-            agreement.reference_wrong += 1;
+        let (is_wrong, theirs_is) = (is_unnamed || !law.allows(its), !asked.law.allows(theirs));
+        agreement.unexplained += usize::from(is_wrong);
+        agreement.reference_wrong += usize::from(theirs_is && !is_wrong);
+        if theirs_is {
+            reference_wrong.push(difference.place);
         }
     }
-    (agreement, differences.into_iter().map(|difference| difference.place).collect())
+    let differing = differences.into_iter().map(|difference| difference.place).collect();
+    Compared { agreement, differing, reference_wrong }
 }
 
 /// Whether a triangle of this class is the nearest one but for rounding.
@@ -182,7 +194,7 @@ mod tests {
         };
         let mut judge = Judge::new(geometry, &|_, _| ());
         let never = |_: &Ray| unreachable!("closest hits name themselves");
-        compare(&mut judge, &asked, &[answer], its_law, &never).0
+        compare(&mut judge, &asked, &[answer], its_law, &never).agreement
     }
 
     /// Of a difference: whether the contestant is wrong, and whether the reference is instead.
@@ -308,7 +320,8 @@ mod tests {
         let never = |_: &Ray| unreachable!("closest hits name themselves");
         let asked =
             Asked { query: Query::Closest, rays: &rays, reference: &reference, law: Law::Exact };
-        let (found, places) = compare(&mut judge, &asked, &answers, Law::Exact, &never);
+        let Compared { agreement: found, differing: places, .. } =
+            compare(&mut judge, &asked, &answers, Law::Exact, &never);
         let expected = Agreement {
             compared: 5,
             missed: 1,
@@ -326,7 +339,8 @@ mod tests {
             [true, false, true, true, true].map(|hit| Answer { hit, id: PrimitiveId::MISS });
         let asked = Asked { query: Query::AnyHit, ..asked };
         for (witness, unexplained) in [(id(2), 1), (PrimitiveId::MISS, 2)] {
-            let (found, places) = compare(&mut judge, &asked, &answers, Law::Exact, &|_| witness);
+            let Compared { agreement: found, differing: places, .. } =
+                compare(&mut judge, &asked, &answers, Law::Exact, &|_| witness);
             assert_eq!((found.missed, found.false_hits, places), (1, 1, vec![1, 2]));
             assert_eq!(found.unexplained, unexplained, "{witness:?}");
         }

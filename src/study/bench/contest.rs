@@ -4,12 +4,13 @@ use super::contestant::{Contestant, Role};
 use super::field::{Event, Field, HeatTime};
 use super::judge::Judging;
 use super::race::{Entry, Plan, Start, Story, Times, race};
-use super::rays::RaySet;
+use super::rays::{Query, RaySet};
 use super::result::{Comparison, Findings, Heat, RayCount, Run, Scene};
-use super::sample::sample;
+use super::sample::{Sample, sample, wrong_by};
 use super::statistics::{Ratio, Spread};
 use super::{Settings, Tell};
 use crate::geometry::Geometry;
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -27,6 +28,8 @@ pub fn contest(
     let start = Instant::now();
     let most_threads = settings.threads.iter().copied().max().unwrap_or(1);
     let mut field = Field::new(geometry, contestants, most_threads, tell);
+
+    let reference = field.reference();
 
     // Who is right, and who may race.
     let (mut starts, mut heats) = (Vec::new(), Vec::new());
@@ -46,19 +49,29 @@ pub fn contest(
         let entries = racing.into_iter().zip(1..).map(|(contestant, n)| {
             let checked = field.check(contestant, &event);
             tell(f64::from(n) / all);
-            let agreement = &checked.agreement;
-            let law = contestants[contestant].law;
-            let right = law.tolerates(agreement.unexplained, agreement.compared);
-            Entry {
-                contestant,
-                checked,
-                right,
-                times: vec![Times::default(); settings.threads.len()],
-            }
+            let times = vec![Times::default(); settings.threads.len()];
+            Entry { contestant, checked, right: true, times }
         });
-        let entries: Vec<_> = entries.collect();
+        let mut entries: Vec<_> = entries.collect();
         let checked = entries.iter().map(|entry: &Entry| &entry.checked);
         let agreed = sample(&mut field.judge, &event, checked);
+        // The reference agrees with itself: it is others who find it out.
+        let found_out = entries.iter().flat_map(|entry| &entry.checked.compared.reference_wrong);
+        let found_out = found_out.collect::<HashSet<_>>().len();
+        // Where all agree that something is hit, what that is was said by the reference alone.
+        let law_of_agreed = |law| if set.kind.query() == Query::AnyHit { event.law } else { law };
+        for entry in &mut entries {
+            let law = contestants[entry.contestant].law;
+            let agreement = &mut entry.checked.compared.agreement;
+            if entry.contestant == reference {
+                agreement.unexplained += found_out;
+            }
+            let of_agreed = law_of_agreed(law);
+            entry.right = law.tolerates(agreement.unexplained, agreement.compared)
+                && of_agreed.tolerates(wrong_by(&agreed, of_agreed), agreed.len());
+        }
+        let laws = entries.iter().map(|entry| law_of_agreed(contestants[entry.contestant].law));
+        let agreed = Sample::new(&agreed, laws);
         starts.push(Start { event, entries, agreed });
     }
     field.judge.leave();
@@ -66,7 +79,7 @@ pub fn contest(
 
     // The race. What the oracle took is not taken from it.
     let judging = Duration::from_secs_f64(oracle.build_seconds + oracle.judge_seconds);
-    let time = (settings.time + judging).saturating_sub(start.elapsed());
+    let time = settings.time.saturating_add(judging).saturating_sub(start.elapsed());
     let plan = Plan { threads: &settings.threads, repetitions: settings.repetitions, time };
     let story = race(&mut field, &mut starts, &plan, tell);
     let runs = starts.iter().flat_map(|start| runs(name, contestants, start, settings)).collect();
@@ -136,7 +149,7 @@ fn runs(
             // No time without agreement.
             rays_per_second: Spread::of(&times.rays_per_second).filter(|_| entry.right),
             hits: entry.checked.hits,
-            agreement: entry.checked.agreement,
+            agreement: entry.checked.compared.agreement,
             busy_turns: times.busy_turns,
         }
     };

@@ -1,7 +1,7 @@
 //! The field of a contest: contestants, their rays and room for them; turns, checks and heats.
 
 use super::Tell;
-use super::agreement::{Agreement, Asked, compare};
+use super::agreement::{Asked, Compared, compare};
 use super::contestant::{Answer, Contestant, Law, Role};
 use super::course::{BATCH, Course};
 use super::crew::Lap;
@@ -60,10 +60,8 @@ pub(super) struct HeatTime {
 
 /// All answers of a contestant to an event.
 pub(super) struct Checked {
-    pub(super) agreement: Agreement,
+    pub(super) compared: Compared,
     pub(super) hits: usize,
-    /// Places of the rays on which it differs from the reference.
-    pub(super) differing: Vec<usize>,
     /// Of the answers of each turn, so that later ones can be held against them.
     pub(super) digests: Vec<u64>,
 }
@@ -90,9 +88,14 @@ impl<'a> Field<'a> {
         self.contestants[contestant].tracer.batch(kind.query()).is_some()
     }
 
+    /// Whose answers are the reference.
+    pub(super) fn reference(&self) -> usize {
+        self.contestants.iter().position(|c| c.role == Role::Baseline).unwrap_or(0)
+    }
+
     /// Rays with the answers of the baseline, or of the first contestant where there is none.
     pub(super) fn event(&mut self, set: &'a RaySet) -> Event<'a> {
-        let baseline = self.contestants.iter().position(|c| c.role == Role::Baseline).unwrap_or(0);
+        let baseline = self.reference();
         let (reference, law) = match self.contestants.get(baseline) {
             Some(contestant) => {
                 let course = &mut self.courses[baseline];
@@ -144,16 +147,10 @@ impl<'a> Field<'a> {
         let Event { set, reference, law } = event;
         let query = set.kind.query();
         let asked = Asked { query, rays: &set.rays, reference, law: *law };
-        let (agreement, differing) = self.compare(contestant, &asked, &answers);
-        Checked { agreement, hits, differing, digests }
+        Checked { compared: self.compare(contestant, &asked, &answers), hits, digests }
     }
 
-    fn compare(
-        &mut self,
-        contestant: usize,
-        asked: &Asked<'_>,
-        answers: &[Answer],
-    ) -> (Agreement, Vec<usize>) {
+    fn compare(&mut self, contestant: usize, asked: &Asked<'_>, answers: &[Answer]) -> Compared {
         let Contestant { tracer, law, isa, .. } = &self.contestants[contestant];
         let witness = |ray: &Ray| {
             let mut answers = Vec::new();
@@ -197,7 +194,7 @@ impl<'a> Field<'a> {
             .map(|(&i, seconds)| {
                 let answers = self.courses[i].answers(query, 0, rays.len());
                 let asked = Asked { query, rays: &rays, reference: &reference, law: event.law };
-                let (agreement, _) = self.compare(i, &asked, &answers);
+                let agreement = self.compare(i, &asked, &answers).agreement;
                 let law = self.contestants[i].law;
                 let right = law.tolerates(agreement.unexplained, agreement.compared);
                 let rays_per_second = right.then(|| rays.len() as f64 / seconds);

@@ -9,11 +9,15 @@
 
 use super::Tell;
 use super::frame_result::{DifferingPixels, Frame, FrameFindings, FrameRatio};
+#[cfg(feature = "bvh")]
+use super::in_house::way_name;
 use super::judge::Judging;
 use super::probe::Probe;
 use super::race::Plan;
 use super::result::Scene;
 use super::statistics::{Ratio, Spread};
+#[cfg(feature = "embree")]
+use crate::accel::Quality;
 #[cfg(feature = "bvh")]
 use crate::accel::bvh::Bvh;
 #[cfg(feature = "embree")]
@@ -51,7 +55,7 @@ pub struct Renderer<'a> {
     /// "embree" or "bvh".
     pub backend: &'static str,
     /// How it was built and is called.
-    pub variant: &'static str,
+    pub variant: String,
     /// Renders the frame on so many threads.
     pub render: Box<dyn Fn(usize) -> Result<Rendered> + 'a>,
 }
@@ -59,7 +63,7 @@ pub struct Renderer<'a> {
 impl<'a> Renderer<'a> {
     /// Renders what `tracer` traces.
     pub fn new<A: Accelerator>(
-        (backend, variant): (&'static str, &'static str),
+        (backend, variant): (&'static str, String),
         tracer: Tracer<'a, A>,
         settings: &FrameSettings,
     ) -> Self {
@@ -91,20 +95,30 @@ pub fn frame(
     let options = BuildOptions { threads: most(&settings.threads), ..settings.build };
     tell("building", 0.0);
     #[cfg(feature = "embree")]
+    let embree_name = format!("{} robust, single", embree_quality(&options));
+    #[cfg(feature = "embree")]
     let embree = EmbreeAccelerator::with_options(geometry.clone(), &options, settings.isa)?;
     #[cfg(feature = "bvh")]
     let bvh = Bvh::with_options(geometry.clone(), &options)?;
     let renderers = [
         #[cfg(feature = "embree")]
-        Renderer::new(("embree", "medium robust, single"), tracer.on(&embree), settings),
+        Renderer::new(("embree", embree_name), tracer.on(&embree), settings),
         #[cfg(feature = "bvh")]
-        Renderer::new(("bvh", "batches"), tracer.on(&bvh), settings),
+        Renderer::new(("bvh", way_name(&options, "batches")), tracer.on(&bvh), settings),
     ];
     let time = settings.time.saturating_sub(begin.elapsed());
     let settings = FrameSettings { time, ..settings.clone() };
     let mut findings = frames(name, geometry, &renderers, &settings, tell)?;
     findings.scene.seconds = begin.elapsed().as_secs_f64();
     Ok(findings)
+}
+
+/// Embree's own word for how it is built; its robust mode knows nothing above medium.
+#[cfg(feature = "embree")]
+fn embree_quality(options: &BuildOptions) -> String {
+    let quality = if options.quality == Quality::Fast { "low" } else { "medium" };
+    let compact = if options.is_compact { " compact" } else { "" };
+    format!("{quality}{compact}")
 }
 
 /// Has `renderers` take turns; the first is the one that the others are held against.
@@ -230,7 +244,7 @@ fn told(
     Frame {
         scene: scene.to_owned(),
         backend: renderer.backend,
-        variant: renderer.variant,
+        variant: renderer.variant.clone(),
         isa: settings.isa.name(),
         threads,
         size: settings.size,
@@ -306,7 +320,7 @@ mod tests {
     }
 
     fn renderer<'a>(backend: &'static str, render: impl Fn() -> Rendered + 'a) -> Renderer<'a> {
-        Renderer { backend, variant: "test", render: Box::new(move |_| Ok(render())) }
+        Renderer { backend, variant: "test".into(), render: Box::new(move |_| Ok(render())) }
     }
 
     fn race(renderers: &[Renderer<'_>], repetitions: usize) -> FrameFindings {

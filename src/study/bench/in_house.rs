@@ -1,7 +1,7 @@
 //! Our side of a bench: any [`Accelerator`], called with many rays at once or with one, and the in-house BVH.
 
 #[cfg(feature = "bvh")]
-pub(super) use hierarchy::recipe;
+pub(super) use hierarchy::{recipe, way_name};
 
 use super::contestant::{Answer, Batch, Tracer};
 use super::rays::Query;
@@ -86,13 +86,14 @@ mod hierarchy {
     use super::super::course::BATCH;
     use super::InHouse;
     use crate::accel::bvh::Bvh;
-    use crate::accel::{Accelerator, BuildOptions, BuildStats, Quality};
+    use crate::accel::{Accelerator, BuildOptions, BuildStats};
     use crate::geometry::Geometry;
     use crate::os::Isa;
     use std::sync::Arc;
 
     struct InHouseBvh {
         bvh: Bvh,
+        options: BuildOptions,
         isa: Isa,
     }
 
@@ -103,15 +104,21 @@ mod hierarchy {
         isa: Isa,
     ) -> Recipe<'g> {
         let options = *options;
-        let of_quality = |(_, quality): &&(_, Quality)| *quality == options.quality;
-        let name = Quality::ALL.iter().find(of_quality).map_or("", |(name, _)| name);
         Recipe {
             backend: "bvh",
-            variant: if options.is_compact { format!("{name} compact") } else { name.to_string() },
+            variant: options.name(),
             build: Box::new(move || {
                 let bvh = Bvh::with_options(geometry.clone(), &options)?;
-                Ok(Box::new(InHouseBvh { bvh, isa }))
+                Ok(Box::new(InHouseBvh { bvh, options, isa }))
             }),
+        }
+    }
+
+    /// What a way of calling it is called: how it was built is said where that is not the default.
+    pub(in super::super) fn way_name(options: &BuildOptions, way: &str) -> String {
+        match options.name().as_str() {
+            "default" => way.to_owned(),
+            built => format!("{built}, {way}"),
         }
     }
 
@@ -128,7 +135,7 @@ mod hierarchy {
                 .flat_map(|isa| ways.map(|way| (isa, way)))
                 .map(|(isa, (name, slice))| Contestant {
                     backend: "bvh",
-                    variant: name.into(),
+                    variant: way_name(&self.options, name),
                     isa,
                     law: Law::Exact,
                     role: Role::Challenger,

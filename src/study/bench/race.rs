@@ -171,7 +171,7 @@ fn repetition(
                 let (lap, answers) = field.run(entry.contestant, set, turn, place.threads);
                 // Every timed answer is one that has been checked.
                 if digest(&answers) != entry.checked.digests[turn] {
-                    entry.checked.agreement.unsteady_turns += 1;
+                    entry.checked.compared.agreement.unsteady_turns += 1;
                     entry.right = false;
                 }
                 probe.run();

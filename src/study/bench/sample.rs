@@ -1,7 +1,9 @@
 //! Answers on which all agree, before the judge: agreement proves nothing where all are wrong.
 
+use super::contestant::Law;
 use super::field::{Checked, Event};
 use super::judge::{Case, Judge};
+use crate::accel::oracle::Judgement;
 use crate::sampling::CounterRng;
 use serde::Serialize;
 use std::collections::HashSet;
@@ -12,8 +14,21 @@ use std::collections::HashSet;
 pub struct Sample {
     /// Rays, spread evenly over all of their kind, of which the reference's closest hit was judged.
     pub judged: usize,
-    /// Of those, where it is wrong by the reference's law.
+    /// Of those, where it is wrong by the strictest law that anybody is held to.
     pub wrong: usize,
+}
+
+impl Sample {
+    /// What there is to tell of these judgements, of answers of all who are held to the `laws`.
+    pub(super) fn new(judgements: &[Judgement], laws: impl Iterator<Item = Law>) -> Self {
+        let wrong = laws.map(|law| wrong_by(judgements, law)).max().unwrap_or(0);
+        Self { judged: judgements.len(), wrong }
+    }
+}
+
+/// How many of those answers a law does not allow.
+pub(super) fn wrong_by(judgements: &[Judgement], law: Law) -> usize {
+    judgements.iter().filter(|judgement| !law.allows(judgement)).count()
 }
 
 /// Rays of a kind, at most.
@@ -24,8 +39,8 @@ pub(super) fn sample<'c>(
     judge: &mut Judge<'_>,
     event: &Event<'_>,
     checked: impl Iterator<Item = &'c Checked>,
-) -> Sample {
-    let differing: HashSet<_> = checked.flat_map(|checked| &checked.differing).collect();
+) -> Vec<Judgement> {
+    let differing: HashSet<_> = checked.flat_map(|checked| &checked.compared.differing).collect();
     let rays = &event.set.rays;
     let parts = rays.len().min(MOST);
     let mut rng = CounterRng::new(event.set.kind as u64);
@@ -36,7 +51,5 @@ pub(super) fn sample<'c>(
     });
     let agreed = places.filter(|place| !differing.contains(place));
     let case = |place: usize| Case { ray: rays[place], answer: event.reference[place].id };
-    let judgements = judge.judge(&agreed.map(case).collect::<Vec<_>>());
-    let wrong = judgements.iter().filter(|judgement| !event.law.allows(judgement)).count();
-    Sample { judged: judgements.len(), wrong }
+    judge.judge(&agreed.map(case).collect::<Vec<_>>())
 }

@@ -27,8 +27,8 @@ pub fn bench_page(report: &Report) -> String {
     html.finish()
 }
 
-const NOTES: &str = "Geometry alone: materials are not read, cut-outs are solid. A contestant is timed only if all its \
-    answers are right. Bars are medians over repetitions in which all took turns on the same rays, whiskers \
+const NOTES: &str = "Geometry alone: materials are not read, cut-outs are solid. A contestant is timed only if its \
+    answers are right, by the exact oracle. Bars are medians over repetitions in which all took turns on the same rays, whiskers \
     reach from the slowest to the fastest. A ratio marked ~ is a tie: the 95 % interval of the median of the \
     repetitions' ratios holds 1. Robust: Embree as renders use it, one ray a call; best call: the fastest of \
     all of Embree's.";

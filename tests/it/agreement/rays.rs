@@ -1,7 +1,7 @@
 //! Rays of every kind that a renderer traces, and those that are out to find gaps.
 
 use glint::accel::resolve;
-use glint::geometry::{Geometry, NONE, PrimitiveId, Ray};
+use glint::geometry::{Aabb, Geometry, NONE, PrimitiveId, Ray};
 use glint::math::Vec3;
 use glint::sampling::{CounterRng, warp};
 
@@ -28,7 +28,8 @@ impl Kind {
 
     /// About `n` rays, always the same.
     pub(crate) fn rays(self, geometry: &Geometry, n: usize) -> Vec<Ray> {
-        let mut draw = Draw { geometry, rng: CounterRng::new(self as u64) };
+        let bounds = geometry.bounds();
+        let mut draw = Draw { geometry, rng: CounterRng::new(self as u64), bounds };
         let wide = (n as f32).sqrt().ceil() as usize;
         let rays = (0..n).map(|i| match self {
             Self::Camera => draw.camera([i % wide, i / wide].map(|k| k as f32 / wide as f32)),
@@ -52,6 +53,8 @@ impl Kind {
 
 struct Draw<'a> {
     geometry: &'a Geometry,
+    /// Of the geometry: worked out once.
+    bounds: Aabb,
     rng: CounterRng,
 }
 
@@ -61,12 +64,12 @@ impl Draw<'_> {
     }
 
     fn anywhere(&mut self) -> Vec3 {
-        let (bounds, rng) = (self.geometry.bounds(), &mut self.rng);
+        let (bounds, rng) = (&self.bounds, &mut self.rng);
         bounds.min + bounds.extent() * Vec3::new(rng.unit(), rng.unit(), rng.unit())
     }
 
     fn camera(&self, [x, y]: [f32; 2]) -> Ray {
-        let bounds = self.geometry.bounds();
+        let bounds = &self.bounds;
         let eye = bounds.center() + bounds.extent() * Vec3::new(0.9, 0.8, 1.1);
         let target = bounds.min + bounds.extent() * Vec3::new(x, y, 0.5);
         Ray::new(eye, target - eye)
