@@ -41,7 +41,8 @@ fn ray_sets(world: &World, accelerator: &impl Accelerator) -> Result<Vec<RaySet>
     let to = world.origin + world.bounds.center().as_dvec3();
     let from = to + f64::from(world.bounds.bounding_radius()) * DVec3::new(0.6, 0.4, 1.0);
     let projection = Projection::Perspective { vertical_fov: 35.0 };
-    let camera = Camera { name: "bench".into(), from, to, up: DVec3::Y, projection };
+    let camera =
+        Camera { name: "bench".into(), location: None, from, to, up: DVec3::Y, projection };
     let closest = |rays: &[Ray]| {
         let mut hits = vec![Hit::MISS; rays.len()];
         accelerator.closest(rays, &AcceptAll, &mut hits);

@@ -14,9 +14,12 @@ use glint::geometry::{Hit, PrimitiveId, Ray};
 use glint::ledger::{Ledger, Stage};
 use glint::load::load_scene;
 use glint::math::{DVec3, Rgb};
+use glint::plan::{Plan, Wishes};
 use glint::render::{RenderJob, render};
 use glint::sampling::{Sampler, SamplerKind};
-use glint::scene::{self, ColorInput, Environment, Material, MaterialId, Projection, Surface};
+use glint::scene::{
+    self, ColorInput, Effects, Environment, Material, MaterialId, Projection, Surface,
+};
 use glint::trace::{Tracer, Wavefront};
 use glint::world::World;
 use std::path::Path;
@@ -113,11 +116,15 @@ fn measure(path: &Path) -> Result<()> {
     let from = world.origin + view.to + (view.from - view.to) * 0.5;
     let camera = scene::Camera {
         name: "bench".into(),
+        location: None,
         from,
         to: world.origin + view.to,
         up: view.up,
         projection: Projection::Perspective { vertical_fov: 35.0 },
     };
+    let effects = Effects::AUTO;
+    let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
+    let plan = &Plan::new(&world, &world.census(), &camera, &wishes);
     let camera = world.camera(&camera, SIZE)?;
     let filter = FilterSampler::new(Filter::parse("blackman-harris")?);
     let job = |threads| RenderJob {
@@ -128,7 +135,6 @@ fn measure(path: &Path) -> Result<()> {
         stop: None,
     };
     let sampler = Sampler::new(SamplerKind::Sobol, 0);
-    let (max_depth, hide_background) = (u32::MAX, false);
 
     let recorder = Recorder { inner: &embree, batches: Mutex::default() };
     let recording = Tracer {
@@ -137,8 +143,7 @@ fn measure(path: &Path) -> Result<()> {
         camera: &camera,
         filter: &filter,
         sampler,
-        max_depth,
-        hide_background,
+        plan,
     };
     let rays = render(&recording, &job(1), &|_| ())?.ledger.rays();
     let batches = recorder.batches.into_inner().expect("no panics while recording");
@@ -149,8 +154,7 @@ fn measure(path: &Path) -> Result<()> {
         camera: &camera,
         filter: &filter,
         sampler,
-        max_depth,
-        hide_background,
+        plan,
     };
     // [threads - 1][render, Embree alone, Embree with our hit records]
     let mut seconds = [[const { Vec::new() }; 3], [const { Vec::new() }; 3]];
@@ -194,7 +198,7 @@ fn measure(path: &Path) -> Result<()> {
 /// Where one thread's time goes, by the ledgers of several renders: median nanoseconds a ray of any kind, and
 /// an item (path or ray) of the stage.
 fn print_stages(ledgers: &[Ledger]) {
-    for stage in Stage::ALL {
+    for &stage in Stage::ALL {
         let per = |items: fn(&Ledger, Stage) -> u64| {
             let cost = |l: &Ledger| 1e9 * l.stage(stage).seconds / items(l, stage).max(1) as f64;
             median(ledgers.iter().map(cost).collect())

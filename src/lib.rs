@@ -27,6 +27,7 @@ pub mod scene;
 pub mod load;
 pub mod accel;
 pub mod world;
+pub mod plan;
 pub mod trace;
 pub mod film;
 pub mod render;

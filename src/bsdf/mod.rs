@@ -175,6 +175,11 @@ pub enum Bsdf {
 }
 
 impl Bsdf {
+    /// Whether an interface of this roughness reflects like a mirror.
+    pub fn is_smooth(roughness: f32) -> bool {
+        microfacet::Ggx::new(roughness, 0.0).is_none()
+    }
+
     /// Glass of any roughness: [`RoughDielectric::new`], or [`Dielectric::new`] where that is `None`.
     #[inline]
     pub fn dielectric(

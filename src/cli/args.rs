@@ -93,8 +93,9 @@ pub(super) struct Render {
     /// Path segments: 1 shows emitters only, 2 adds direct light [default: unbounded]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Image")]
     pub(super) max_depth: Option<u32>,
-    /// Effects to simulate: path [default: path]
-    #[arg(long, value_name = "NAME", value_parser = named("effects", &Effects::ALL), help_heading = "Image")]
+    /// Effects to simulate: auto, all, whitted, direct, ambient-occlusion, path, or a list such as all,no-refraction
+    /// (glint plan --help names them all) [default: auto]
+    #[arg(long, value_name = "NAME,...", help_heading = "Image")]
     pub(super) effects: Option<Effects>,
     /// Sampler: sobol or independent [default: sobol]
     #[arg(long, value_name = "NAME", value_parser = named("sampler", &SamplerKind::ALL), help_heading = "Image")]

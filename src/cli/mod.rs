@@ -7,6 +7,7 @@ mod args;
 mod bench;
 mod generate;
 mod output;
+mod plan_table;
 mod progress;
 mod render;
 mod report;

@@ -17,6 +17,7 @@ use crate::film::Region;
 use crate::filter::FilterSampler;
 use crate::load;
 use crate::os::Isa;
+use crate::plan::Plan;
 use crate::render::{RenderJob, Rendered, render, render_layers};
 use crate::trace::{Tracer, Wavefront};
 use crate::world::World;
@@ -48,13 +49,17 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     busy.set_message("building");
     let (cameras, up) = (std::mem::take(&mut scene.cameras), scene.up);
     let (inputs, environment) = (std::mem::take(&mut scene.inputs), scene.environment);
-    let world = World::compile(scene)?;
-    busy.suspend(|| report::warnings(args, &world.warnings));
-    let (camera, description) = select::camera(args, &cameras, up, &world, settings.size)?;
+    let whole = World::compile(scene)?;
+    busy.suspend(|| report::warnings(args, &whole.warnings));
+    let (camera, description) = select::camera(args, &cameras, up, &whole, settings.size)?;
+
+    // The effects that it calls for, and what runs for them.
+    let (world, plan) = settings.plan(&whole, &description, args.background.is_some())?;
     let overrides = (args.background, &args.override_material, environment, up);
     let fingerprint =
         load::fingerprint(&inputs, &format!("{settings:?} {description:?} {overrides:?}"))?;
     busy.suspend(|| report::choices(args, &settings, &description, &world, up));
+    busy.suspend(|| report::plan(args, &plan));
     if args.accel == Backend::Auto {
         busy.suspend(|| report::backend(args, chosen.name()));
     }
@@ -65,6 +70,7 @@ pub(super) fn run(args: &Render) -> Result<u8> {
     let mut job = Job {
         args,
         settings: &settings,
+        plan: &plan,
         outputs: &outputs,
         stop: &stop,
         name: ("", String::new()),
@@ -136,6 +142,7 @@ fn backend(wanted: Backend) -> Result<Chosen> {
 pub(super) struct Job<'a> {
     pub(super) args: &'a Render,
     pub(super) settings: &'a Settings,
+    pub(super) plan: &'a Plan,
     pub(super) outputs: &'a Outputs,
     pub(super) stop: &'a Arc<AtomicBool>,
     pub(super) name: (&'static str, String),
@@ -152,10 +159,7 @@ fn finish<A: Accelerator>(
 ) -> Result<u8> {
     let settings = job.settings;
     let filter = FilterSampler::new(settings.filter);
-    let tracer = Tracer {
-        hide_background: job.args.background.is_some(),
-        ..settings.tracer(world, camera, &filter).on(accelerator)
-    };
+    let tracer = settings.tracer(world, job.plan, camera, &filter).on(accelerator);
     if let Some((pixel, sample)) = job.args.replay {
         return replay(job, &tracer, pixel, sample);
     }

@@ -4,17 +4,19 @@
 //! machine did goes to the statistics.
 
 use super::args::Render;
+use super::plan_table;
 use super::render::Job;
 use super::select::Settings;
 use super::statistics::{Statistics, command};
 use crate::error::{Error, Result, Warning};
-use crate::film::Region;
+use crate::film::{ClassShare, Region};
 use crate::geometry::PrimitiveId;
 use crate::image::{Attribute, write_whole};
 use crate::math::DVec3;
 use crate::os::Isa;
+use crate::plan::Plan;
 use crate::render::Rendered;
-use crate::scene;
+use crate::scene::{self, Effect};
 use crate::trace::PixelSample;
 use crate::world::World;
 use std::io::Write;
@@ -49,6 +51,13 @@ pub(super) fn backend(args: &Render, name: &str) {
     );
 }
 
+/// Which effects are simulated, and why.
+pub(super) fn plan(args: &Render, plan: &Plan) {
+    for line in plan_table::lines(plan) {
+        say(args, &line);
+    }
+}
+
 /// What will be rendered, defaults included.
 pub(super) fn choices(
     args: &Render,
@@ -70,7 +79,7 @@ pub(super) fn choices(
             world.geometry.placed_triangles(),
             world.lights.emitter_count(),
             settings.samples_per_pixel,
-            settings.effects.name(),
+            settings.effects,
             settings.seed
         ),
     );
@@ -151,6 +160,18 @@ pub(super) fn metadata(
 ) -> Vec<(&'static str, Attribute)> {
     let settings = job.settings;
     let text = |value: String| Attribute::Text(value);
+    let share = |s: &ClassShare| {
+        format!(
+            "{}: {:.2} % energy, {:.2} % variance",
+            s.class.name(),
+            100.0 * s.energy,
+            100.0 * s.variance
+        )
+    };
+    let shares: Vec<String> = rendered.classes.shares().iter().map(share).collect();
+    let named = |rows: Vec<&str>| if rows.is_empty() { "nothing".into() } else { rows.join(", ") };
+    let simulated = job.plan.rows.iter().filter(|row| row.on).map(|row| row.effect).collect();
+    let lacks = settings.effects.left_out().map(Effect::name).collect();
     let (low, high) = rendered.film.samples();
     let [width, height] = settings.size;
     let Region { start, end } = settings.region;
@@ -166,6 +187,10 @@ pub(super) fn metadata(
             text(if low == high { low.to_string() } else { format!("{low}..{high}") }),
         ),
         ("glint.seed", text(settings.seed.to_string())),
+        ("glint.effects", text(settings.effects.to_string())),
+        ("glint.simulated", text(named(simulated))),
+        ("glint.lacks", text(named(lacks))),
+        ("glint.shares", text(shares.join("; "))),
         ("glint.settings", text(format!("{settings:?}"))),
         ("glint.origin", text(format!("{},{},{}", origin.x, origin.y, origin.z))),
         ("glint.backend", text(format!("{} {}", job.name.0, job.name.1))),

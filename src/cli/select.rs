@@ -9,9 +9,10 @@ use crate::filter::{Filter, FilterSampler};
 use crate::image::ToneMap;
 use crate::load::{self, LoadOptions, Surroundings};
 use crate::math::{DVec3, Rgb};
+use crate::plan::{Plan, Wishes};
 use crate::render::Aov;
 use crate::sampling::{Sampler, SamplerKind};
-use crate::scene::{self, Effects, Projection, Scene, SceneSettings};
+use crate::scene::{self, Effects, Projection, Scene, SceneSettings, Style};
 use crate::trace::Tracer;
 use crate::world::World;
 
@@ -46,7 +47,7 @@ impl Settings {
             }),
             samples_per_pixel: args.spp.or(file.samples_per_pixel).unwrap_or(128),
             max_depth: args.max_depth.or(file.max_depth).unwrap_or(u32::MAX),
-            effects: said(args.effects, &file.effects, &Effects::ALL, "effects")?,
+            effects: args.effects.map_or_else(|| effects_in_file(file), Ok)?,
             sampler: said(args.sampler, &file.sampler, &SamplerKind::ALL, "sampler")?,
             seed: args.seed.or(file.seed).unwrap_or(0),
             filter: args.filter.or(filter).unwrap_or_default(),
@@ -56,10 +57,33 @@ impl Settings {
         })
     }
 
+    /// The world that is rendered, and the plan for it. `whole` is the world with everything in it, `camera` the one
+    /// that it is seen with.
+    ///
+    /// # Errors
+    /// None that a user could cause.
+    pub(super) fn plan(
+        &self,
+        whole: &World,
+        camera: &scene::Camera,
+        hide_background: bool,
+    ) -> Result<(World, Plan)> {
+        let effects = self.effects;
+        let world = whole.with_effects(&effects)?;
+        let census = match effects.style {
+            Style::AmbientOcclusion => world.census(),
+            Style::Auto | Style::All => whole.census(),
+        };
+        let wishes = Wishes { effects, max_depth: self.max_depth, hide_background };
+        let plan = Plan::new(&world, &census, camera, &wishes);
+        Ok((world, plan))
+    }
+
     /// What is traced, but for the accelerator: `on` brings it.
     pub(super) fn tracer<'a>(
         &self,
         world: &'a World,
+        plan: &'a Plan,
         camera: &'a Camera,
         filter: &'a FilterSampler,
     ) -> Tracer<'a, ()> {
@@ -69,8 +93,7 @@ impl Settings {
             camera,
             filter,
             sampler: Sampler::new(self.sampler, self.seed),
-            max_depth: self.max_depth,
-            hide_background: false,
+            plan,
         }
     }
 }
@@ -93,6 +116,10 @@ pub(super) fn scene(
     scene.up = args.up.map_or(scene.up, Up::direction);
     let settings = Settings::resolve(args, &scene.settings)?;
     Ok((scene, settings))
+}
+
+fn effects_in_file(file: &SceneSettings) -> Result<Effects> {
+    file.effects.as_ref().map_or(Ok(Effects::AUTO), |text| text.parse().map_err(Error::Usage))
 }
 
 /// What the command line says, or else the scene file by name, or else the default.
@@ -215,6 +242,7 @@ pub(super) fn automatic(
     let view = frame_points(bounds, points, up, aspect, vertical_fov)?;
     Ok(scene::Camera {
         name: "automatic".into(),
+        location: None,
         from: view.from + world.origin,
         to: view.to + world.origin,
         up: view.up,

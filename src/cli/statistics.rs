@@ -5,8 +5,9 @@
 use super::render::Job;
 use crate::accel::BuildStats;
 use crate::film::Film;
-use crate::ledger::{Ledger, Stage};
+use crate::ledger::{Class, Ledger, Stage};
 use crate::os::peak_rss_bytes;
+use crate::plan::Row;
 use crate::render::Rendered;
 use crate::world::World;
 use serde::Serialize;
@@ -46,7 +47,8 @@ pub(super) struct Statistics {
     rays: Rays,
     /// Of the render alone.
     rays_per_second: f64,
-    ledger: StageTable,
+    plan: Vec<PlanRow>,
+    ledger: Bill,
     /// Samples that were not finite and are not in the image.
     non_finite: u64,
     /// Hash of the settings and of the contents of every file read.
@@ -96,11 +98,41 @@ struct Rays {
     total: u64,
 }
 
-/// What each stage of the wavefront cost, summed over threads.
+/// One effect or strategy: whether it was simulated, and why.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-struct StageTable {
+struct PlanRow {
+    effect: &'static str,
+    on: bool,
+    reason: String,
+    /// `FILE:LINE` of what calls for it.
+    source: Option<String>,
+}
+
+/// What the render cost, and what for.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Bill {
+    /// Seconds of all threads, in stages or not.
+    worker_seconds: f64,
+    /// Each stage of the wavefront, summed over threads.
     stages: Vec<StageRow>,
+    /// The transport classes that brought any light or took any rays.
+    classes: Vec<ClassRow>,
+    /// Pixels whose light was told apart by class.
+    watched_pixels: usize,
+}
+
+/// One class of transport.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct ClassRow {
+    class: &'static str,
+    /// Its stages' seconds, by number of rays.
+    seconds: f64,
+    rays: u64,
+    energy_share: f64,
+    variance_share: f64,
 }
 
 /// One stage.
@@ -139,7 +171,8 @@ impl Statistics {
                 geometry: world.geometry.bytes(),
                 acceleration: build.bytes,
                 textures: world.texture_bytes(),
-                film: rendered.film.region().pixels() * Film::BYTES_PER_PIXEL,
+                film: rendered.film.region().pixels() * Film::BYTES_PER_PIXEL
+                    + rendered.classes.bytes(),
                 peak_rss: peak_rss_bytes(),
             },
             hierarchy: build.shape.map(|shape| Hierarchy {
@@ -151,15 +184,21 @@ impl Statistics {
                     / world.geometry.stored_triangles().max(1) as f64,
             }),
             samples_per_pixel: rendered.film.samples().0,
-            paths: ledger.camera_rays,
+            paths: ledger.camera_rays(),
             rays: Rays {
-                camera: ledger.camera_rays,
-                bounce: ledger.bounce_rays,
-                shadow: ledger.shadow_rays,
+                camera: ledger.camera_rays(),
+                bounce: ledger.bounce_rays(),
+                shadow: ledger.shadow_rays(),
                 total: ledger.rays(),
             },
             rays_per_second: ledger.rays() as f64 / rendered.seconds.max(1e-9),
-            ledger: StageTable { stages: stage_rows(ledger) },
+            plan: job.plan.rows.iter().map(PlanRow::new).collect(),
+            ledger: Bill {
+                worker_seconds: ledger.worker_seconds,
+                stages: stage_rows(ledger),
+                classes: class_rows(rendered),
+                watched_pixels: rendered.classes.pixels(),
+            },
             non_finite: rendered.non_finite.count,
             fingerprint: job.fingerprint.clone(),
         }
@@ -193,6 +232,30 @@ impl Statistics {
     }
 }
 
+impl PlanRow {
+    fn new(row: &Row) -> Self {
+        let source = row.source.as_ref().map(ToString::to_string);
+        Self { effect: row.effect, on: row.on, reason: row.reason.clone(), source }
+    }
+}
+
+fn class_rows(rendered: &Rendered) -> Vec<ClassRow> {
+    let shares = rendered.classes.shares();
+    let row = |&class: &Class| {
+        let rays = rendered.ledger.class_rays(class);
+        let share = shares.iter().find(|share| share.class == class);
+        let row = ClassRow {
+            class: class.name(),
+            seconds: rendered.ledger.class_seconds(class),
+            rays: rays.path + rays.shadow,
+            energy_share: share.map_or(0.0, |share| share.energy),
+            variance_share: share.map_or(0.0, |share| share.variance),
+        };
+        (row.rays > 0 || share.is_some()).then_some(row)
+    };
+    Class::ALL.iter().filter_map(row).collect()
+}
+
 fn stage_rows(ledger: &Ledger) -> Vec<StageRow> {
     let row = |stage: Stage| {
         let totals = ledger.stage(stage);
@@ -204,7 +267,7 @@ fn stage_rows(ledger: &Ledger) -> Vec<StageRow> {
             mean_batch: totals.items as f64 / totals.calls.max(1) as f64,
         }
     };
-    Stage::ALL.into_iter().map(row).collect()
+    Stage::ALL.iter().copied().map(row).collect()
 }
 
 /// The command line as it was typed.

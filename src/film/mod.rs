@@ -4,9 +4,11 @@
 //! as an integer, so threads, tile order, interruption and merging cannot change a byte. There is one
 //! sum a replicate: error and variance come from their spread. Knows nothing of paths or scenes.
 
+mod classes;
 mod fixed;
 mod pixels;
 
+pub use classes::{ClassFilm, ClassSample, ClassShare};
 pub use pixels::{Pixels, Region};
 
 use crate::math::Rgb;

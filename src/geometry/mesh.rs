@@ -124,6 +124,12 @@ impl Geometry {
         self.all_meshes().any(|m| m.filtered)
     }
 
+    /// Has hit filters asked about every mesh.
+    pub fn filter_everything(&mut self) {
+        let objects = self.objects.iter_mut().flat_map(|object| &mut object.meshes);
+        self.meshes.iter_mut().chain(objects).for_each(|mesh| mesh.filtered = true);
+    }
+
     /// Number of triangles stored (instances not multiplied).
     pub fn stored_triangles(&self) -> usize {
         self.all_meshes().map(|m| m.triangles.len()).sum()

@@ -1,66 +1,17 @@
-//! What each stage of the wavefront costs: seconds, calls and rays, always on.
+//! The bill: what each stage of the wavefront costs, how many rays each class of transport takes. Always on.
 //!
 //! A stage works on a batch, so timing it takes two clock reads per many paths. Each worker keeps its own
 //! ledger; they are added at the end. Knows nothing of what the stages do.
 
+mod class;
+mod stage;
+mod watch;
+
+pub use class::{Class, Events};
+pub use stage::Stage;
+pub use watch::Watch;
+
 use std::time::Instant;
-
-/// The stages of the wavefront, in their order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Stage {
-    /// Camera rays into free slots.
-    Generate,
-    /// Closest hits.
-    Intersect,
-    /// Hits to surface interactions.
-    Interact,
-    /// Emission found by the rays themselves.
-    Emit,
-    /// Materials and their textures to scattering models.
-    Materials,
-    /// Choosing lights and evaluating BSDFs towards them.
-    SampleLights,
-    /// Shadow rays.
-    Shadow,
-    /// Choosing the next directions.
-    Scatter,
-    /// Russian roulette and compaction.
-    Roulette,
-    /// Finished paths into the film.
-    Accumulate,
-}
-
-impl Stage {
-    /// Every stage, in order.
-    pub const ALL: [Self; 10] = [
-        Self::Generate,
-        Self::Intersect,
-        Self::Interact,
-        Self::Emit,
-        Self::Materials,
-        Self::SampleLights,
-        Self::Shadow,
-        Self::Scatter,
-        Self::Roulette,
-        Self::Accumulate,
-    ];
-
-    /// Name in tables and JSON.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Generate => "generate",
-            Self::Intersect => "intersect",
-            Self::Interact => "interact",
-            Self::Emit => "emit",
-            Self::Materials => "materials",
-            Self::SampleLights => "sample lights",
-            Self::Shadow => "shadow",
-            Self::Scatter => "scatter",
-            Self::Roulette => "roulette",
-            Self::Accumulate => "accumulate",
-        }
-    }
-}
 
 /// Totals of one stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -73,16 +24,24 @@ pub struct StageTotals {
     pub items: u64,
 }
 
-/// Totals of all stages, and of rays by kind.
+/// Rays of one class.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClassRays {
+    /// From the camera and from surface to surface.
+    pub path: u64,
+    /// Towards lights.
+    pub shadow: u64,
+}
+
+/// Totals of all stages, and of rays by class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger {
-    stages: [StageTotals; Stage::ALL.len()],
-    /// Paths begun: rays from the camera.
-    pub camera_rays: u64,
-    /// Rays that continue a path.
-    pub bounce_rays: u64,
-    /// Rays towards lights.
-    pub shadow_rays: u64,
+    stages: [StageTotals; Stage::COUNT],
+    classes: [ClassRays; Class::COUNT],
+    /// How often hit filters were asked.
+    pub filter_calls: u64,
+    /// Seconds of all workers, in stages or not.
+    pub worker_seconds: f64,
 }
 
 impl Ledger {
@@ -91,14 +50,65 @@ impl Ledger {
         self.stages[stage as usize]
     }
 
+    /// Rays of one class.
+    pub fn class_rays(&self, class: Class) -> ClassRays {
+        self.classes[class as usize]
+    }
+
+    /// Paths begun: rays from the camera.
+    pub fn camera_rays(&self) -> u64 {
+        self.class_rays(Class::Seen).path
+    }
+
+    /// Rays that continue a path.
+    pub fn bounce_rays(&self) -> u64 {
+        self.classes.iter().map(|rays| rays.path).sum::<u64>() - self.camera_rays()
+    }
+
+    /// Rays towards lights.
+    pub fn shadow_rays(&self) -> u64 {
+        self.classes.iter().map(|rays| rays.shadow).sum()
+    }
+
     /// All rays.
     pub fn rays(&self) -> u64 {
-        self.camera_rays + self.bounce_rays + self.shadow_rays
+        self.camera_rays() + self.bounce_rays() + self.shadow_rays()
     }
 
     /// Worker seconds in all stages.
     pub fn seconds(&self) -> f64 {
         self.stages.iter().map(|s| s.seconds).sum()
+    }
+
+    /// Worker seconds that the rays of a class took: its share, by number, of what rays of a path go through and of
+    /// what shadow rays go through. What happens once a path belongs to the light that is seen.
+    pub fn class_seconds(&self, class: Class) -> f64 {
+        let rays = self.class_rays(class);
+        let share = |own: u64, all: u64| own as f64 / all.max(1) as f64;
+        let of_paths = share(rays.path, self.camera_rays() + self.bounce_rays());
+        let of_shadows = share(rays.shadow, self.shadow_rays());
+        let once = if class == Class::Seen { 1.0 } else { 0.0 };
+        let seconds = |&stage: &Stage| {
+            let share = match stage {
+                Stage::Generate | Stage::Lens | Stage::Accumulate => once,
+                Stage::SampleLights | Stage::Shadow => of_shadows,
+                _ => of_paths,
+            };
+            share * self.stage(stage).seconds
+        };
+        Stage::ALL.iter().map(seconds).sum()
+    }
+
+    /// Counts a ray that begins or continues a path.
+    #[inline]
+    pub fn count_path_ray(&mut self, class: Class) {
+        self.classes[class as usize].path += 1;
+    }
+
+    /// Counts a ray towards a light.
+    #[inline]
+    pub fn count_shadow_ray(&mut self, class: Class) {
+        self.classes[class as usize].shadow += 1;
     }
 
     /// Adds another worker's totals.
@@ -108,9 +118,12 @@ impl Ledger {
             mine.calls += theirs.calls;
             mine.items += theirs.items;
         }
-        self.camera_rays += other.camera_rays;
-        self.bounce_rays += other.bounce_rays;
-        self.shadow_rays += other.shadow_rays;
+        for (mine, theirs) in self.classes.iter_mut().zip(other.classes) {
+            mine.path += theirs.path;
+            mine.shadow += theirs.shadow;
+        }
+        self.filter_calls += other.filter_calls;
+        self.worker_seconds += other.worker_seconds;
     }
 }
 
@@ -133,6 +146,13 @@ impl Clock {
         totals.seconds += (now - self.last).as_secs_f64();
         totals.calls += 1;
         totals.items += items as u64;
+        self.last = now;
+    }
+
+    /// Charges everything since the last lap to `stage`, in a batch that has been counted.
+    pub fn charge(&mut self, ledger: &mut Ledger, stage: Stage) {
+        let now = Instant::now();
+        ledger.stages[stage as usize].seconds += (now - self.last).as_secs_f64();
         self.last = now;
     }
 }

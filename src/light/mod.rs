@@ -9,6 +9,7 @@
 mod constant;
 mod directional;
 mod image_environment;
+mod kind;
 mod lat_long;
 mod point;
 mod sky;
@@ -18,6 +19,7 @@ pub mod triangle;
 pub use constant::ConstantEnvironment;
 pub use directional::DirectionalLight;
 pub use image_environment::{ImageEnvironment, orientation};
+pub use kind::LightKind;
 pub use point::PointLight;
 pub use sky::{Sky, SkyParameters};
 pub use spot::SpotLight;
@@ -58,6 +60,18 @@ pub enum Light {
 }
 
 impl Light {
+    /// What kind of light it is.
+    pub fn kind(&self) -> LightKind {
+        match self {
+            Self::Point(_) => LightKind::Point,
+            Self::Spot(_) => LightKind::Spot,
+            Self::Directional(light) if light.is_delta() => LightKind::Direction,
+            Self::Directional(_) => LightKind::Disc,
+            Self::Constant(_) => LightKind::Constant,
+            Self::Image(_) => LightKind::Image,
+        }
+    }
+
     /// A direction from `point` to the light, chosen by a uniform point of the square; `None` where the
     /// light sends nothing.
     #[inline(always)]
@@ -106,11 +120,7 @@ impl Light {
 
     /// Whether only light sampling can find this light.
     pub fn is_delta(&self) -> bool {
-        match self {
-            Self::Point(_) | Self::Spot(_) => true,
-            Self::Directional(light) => light.is_delta(),
-            Self::Constant(_) | Self::Image(_) => false,
-        }
+        self.kind().is_delta()
     }
 
     /// Whether rays that leave the scene can see this light.

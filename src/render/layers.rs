@@ -73,7 +73,7 @@ pub fn render_layers<A: Accelerator>(
     samples_per_pixel: u64,
     threads: usize,
 ) -> Result<Layers> {
-    if tracer.world.has_cut_outs() {
+    if tracer.plan.pipeline.hit_filter {
         run(tracer, &CutOuts::new(tracer.world), region, samples_per_pixel, threads)
     } else {
         run(tracer, &AcceptAll, region, samples_per_pixel, threads)

@@ -12,8 +12,8 @@ pub use non_finite::{NonFinite, NonFiniteSample};
 
 use crate::accel::{Accelerator, AcceptAll, HitFilter};
 use crate::error::{Error, Result};
-use crate::film::{Film, Region};
-use crate::ledger::Ledger;
+use crate::film::{ClassFilm, ClassSample, Film, Region};
+use crate::ledger::{Clock, Ledger, Stage, Watch};
 use crate::trace::{Block, PixelSample, Tracer, Wavefront};
 use crate::world::CutOuts;
 use std::sync::Mutex;
@@ -40,6 +40,8 @@ pub struct RenderJob<'a> {
 pub struct Rendered {
     /// The sums.
     pub film: Film,
+    /// Sums by transport class, of the watched pixels.
+    pub classes: ClassFilm,
     /// What the stages cost, over all workers.
     pub ledger: Ledger,
     /// Wall-clock seconds.
@@ -62,8 +64,8 @@ pub fn render<A: Accelerator>(
     job: &RenderJob<'_>,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Rendered> {
-    // The one place where cut-outs are decided: scenes without them carry no filter at all.
-    if tracer.world.has_cut_outs() {
+    // Scenes without cut-outs carry no filter at all.
+    if tracer.plan.pipeline.hit_filter {
         run(tracer, &CutOuts::new(tracer.world), job, progress)
     } else {
         run(tracer, &AcceptAll, job, progress)
@@ -77,14 +79,15 @@ pub fn replay<A: Accelerator>(
     sample: u64,
 ) -> Vec<PixelSample> {
     let (start, end) = (region.start, region.end);
-    let block = Block { start, end, first_sample: sample, end_sample: sample + 1 };
+    let block =
+        Block { start, end, first_sample: sample, end_sample: sample + 1, watch: Watch::NONE };
     let mut found = Vec::new();
     let mut wavefront = Wavefront::new(region.pixels());
-    if tracer.world.has_cut_outs() {
+    if tracer.plan.pipeline.hit_filter {
         let filter = CutOuts::new(tracer.world);
-        wavefront.run(tracer, &filter, &block, |s| found.push(*s));
+        wavefront.run(tracer, &filter, &block, |s, _| found.push(*s));
     } else {
-        wavefront.run(tracer, &AcceptAll, &block, |s| found.push(*s));
+        wavefront.run(tracer, &AcceptAll, &block, |s, _| found.push(*s));
     }
     found
 }
@@ -106,40 +109,64 @@ fn run<A: Accelerator, F: HitFilter>(
     let start = Instant::now();
     let blocks = Blocks::new(job);
     let next = AtomicU64::new(0);
-    let total = Mutex::new((Film::new(job.region), Ledger::default(), NonFinite::default()));
+    let total = Mutex::new(Total {
+        film: Film::new(job.region),
+        classes: ClassFilm::new(blocks.watch, job.region.height()),
+        ledger: Ledger::default(),
+        non_finite: NonFinite::default(),
+    });
     let stopped = || job.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
 
     thread_pool(job.threads)?.broadcast(|_| {
+        let begin = Instant::now();
         let mut wavefront = Wavefront::new(job.batch);
+        let mut watched: Vec<ClassSample> = Vec::new();
         let mut non_finite = NonFinite::default();
         let mut film = Film::new(Region { start: [0; 2], end: [0; 2] });
         while !stopped() {
             let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
             film.restart(Region { start: block.start, end: block.end });
-            wavefront.run(tracer, filter, &block, |sample| {
-                if sample.radiance.is_finite() {
-                    film.add(sample.pixel, sample.sample, sample.radiance, sample.coverage);
-                } else {
+            wavefront.run(tracer, filter, &block, |sample, parts| {
+                if !sample.radiance.is_finite() {
                     non_finite.record(sample, tracer.world);
+                    return;
+                }
+                film.add(sample.pixel, sample.sample, sample.radiance, sample.coverage);
+                if let Some((cell, &parts)) = parts {
+                    watched.push(ClassSample { cell, sample: sample.sample, parts });
                 }
             });
+            let mut clock = Clock::start();
             if let Ok(mut total) = total.lock() {
-                total.0.merge(&film);
+                total.film.merge(&film);
+                total.classes.add(&watched);
             }
+            watched.clear();
+            clock.charge(&mut wavefront.ledger, Stage::Accumulate);
             progress(block.paths());
         }
+        wavefront.ledger.worker_seconds += begin.elapsed().as_secs_f64();
         if let Ok(mut total) = total.lock() {
-            total.1.add(&wavefront.ledger);
-            total.2.add(&non_finite);
+            total.ledger.add(&wavefront.ledger);
+            total.non_finite.add(&non_finite);
         }
     });
 
-    let (film, ledger, non_finite) = match total.into_inner() {
+    let Total { film, classes, ledger, non_finite } = match total.into_inner() {
         Ok(total) => total,
         Err(poisoned) => poisoned.into_inner(),
     };
+    let seconds = start.elapsed().as_secs_f64();
     let interrupted = blocks.get(next.into_inner()).is_some();
-    Ok(Rendered { film, ledger, seconds: start.elapsed().as_secs_f64(), non_finite, interrupted })
+    Ok(Rendered { film, classes, ledger, seconds, non_finite, interrupted })
+}
+
+/// What workers add up.
+struct Total {
+    film: Film,
+    classes: ClassFilm,
+    ledger: Ledger,
+    non_finite: NonFinite,
 }
 
 /// The blocks of a job in the order in which they are taken: every tile of a pass, then the next pass.
@@ -147,6 +174,7 @@ fn run<A: Accelerator, F: HitFilter>(
 struct Blocks {
     tiles: Vec<Region>,
     samples_per_pixel: u64,
+    watch: Watch,
 }
 
 impl Blocks {
@@ -157,7 +185,12 @@ impl Blocks {
     const FIRST_LARGE: u64 = 6;
 
     fn new(job: &RenderJob<'_>) -> Self {
-        Self { tiles: job.region.tiles(TILE), samples_per_pixel: job.samples_per_pixel }
+        let Region { start, end } = job.region;
+        Self {
+            tiles: job.region.tiles(TILE),
+            samples_per_pixel: job.samples_per_pixel,
+            watch: Watch::new(start, end, ClassFilm::PIXELS),
+        }
     }
 
     /// First sample of a pass.
@@ -176,8 +209,9 @@ impl Blocks {
         let pass = n / tiles;
         let first_sample = Self::first_sample(pass);
         let end_sample = Self::first_sample(pass + 1).min(self.samples_per_pixel);
-        let (start, end) = (tile.start, tile.end);
-        (first_sample < end_sample).then_some(Block { start, end, first_sample, end_sample })
+        let (start, end, watch) = (tile.start, tile.end, self.watch);
+        let block = Block { start, end, first_sample, end_sample, watch };
+        (first_sample < end_sample).then_some(block)
     }
 }
 
@@ -189,7 +223,8 @@ mod tests {
     fn blocks_take_every_sample_of_every_pixel_once() {
         let region = Region { start: [3, 5], end: [70, 41] };
         for samples_per_pixel in [1, 2, 5, 31, 32, 33, 200] {
-            let blocks = Blocks { tiles: region.tiles(TILE), samples_per_pixel };
+            let watch = Watch::NONE;
+            let blocks = Blocks { tiles: region.tiles(TILE), samples_per_pixel, watch };
             let mut taken = vec![0; region.pixels()];
             let mut last_sample = 0;
             for block in (0..).map_while(|n| blocks.get(n)) {

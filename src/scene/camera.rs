@@ -1,5 +1,6 @@
 //! Cameras as files describe them.
 
+use crate::error::Location;
 use crate::math::DVec3;
 
 /// Where the camera is, where it looks, and how it projects.
@@ -7,6 +8,8 @@ use crate::math::DVec3;
 pub struct Camera {
     /// Name for `--camera`.
     pub name: String,
+    /// Where it is defined, if in a file.
+    pub location: Option<Location>,
     /// Position.
     pub from: DVec3,
     /// A point in the middle of the picture.
@@ -41,4 +44,11 @@ pub enum Projection {
     },
     /// Full latitude-longitude panorama; `to` is in its centre.
     Panoramic,
+}
+
+impl Projection {
+    /// Whether it blurs what is out of focus.
+    pub fn has_lens(&self) -> bool {
+        matches!(self, Self::ThinLens { lens_radius, .. } if *lens_radius > 0.0)
+    }
 }

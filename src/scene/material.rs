@@ -194,29 +194,35 @@ impl Material {
         Self::new("default", Surface::Lambert { albedo: ColorInput::constant(Rgb::splat(0.5)) })
     }
 
+    /// The inputs of its surface and of its emission: colours, and numbers.
+    pub fn inputs(&mut self) -> (Vec<&mut ColorInput>, Vec<&mut ScalarInput>) {
+        let (mut colors, scalars) = match &mut self.surface {
+            Surface::Lambert { albedo } | Surface::OrenNayar { albedo, .. } => {
+                (vec![albedo], vec![])
+            }
+            Surface::Mirror { reflectance } => (vec![reflectance], vec![]),
+            Surface::Dielectric { roughness, .. } | Surface::Conductor { roughness, .. } => {
+                (vec![], vec![roughness])
+            }
+            Surface::Plastic { albedo, roughness, .. } => (vec![albedo], vec![roughness]),
+            Surface::Principled { base_color, metallic, roughness, specular, .. } => {
+                (vec![base_color, specular], vec![metallic, roughness])
+            }
+        };
+        colors.extend(self.emission.as_mut().map(|emission| &mut emission.radiance));
+        (colors, scalars)
+    }
+
     /// Calls `visit` on every texture of the material.
     pub fn for_each_texture(&mut self, mut visit: impl FnMut(&mut TextureReference)) {
-        let (colors, scalars): (Vec<&mut ColorInput>, Vec<&mut ScalarInput>) =
-            match &mut self.surface {
-                Surface::Lambert { albedo } | Surface::OrenNayar { albedo, .. } => {
-                    (vec![albedo], vec![])
-                }
-                Surface::Mirror { reflectance } => (vec![reflectance], vec![]),
-                Surface::Dielectric { roughness, .. } | Surface::Conductor { roughness, .. } => {
-                    (vec![], vec![roughness])
-                }
-                Surface::Plastic { albedo, roughness, .. } => (vec![albedo], vec![roughness]),
-                Surface::Principled { base_color, metallic, roughness, specular, .. } => {
-                    (vec![base_color, specular], vec![metallic, roughness])
-                }
-            };
-        let emission = self.emission.as_mut().map(|emission| &mut emission.radiance);
-        for color in colors.into_iter().chain(emission) {
+        let (colors, scalars) = self.inputs();
+        for color in colors {
             color.texture.iter_mut().for_each(&mut visit);
         }
-        for scalar in scalars.into_iter().chain([&mut self.opacity]) {
+        for scalar in scalars {
             scalar.texture.iter_mut().for_each(|(texture, _)| visit(texture));
         }
+        self.opacity.texture.iter_mut().for_each(|(texture, _)| visit(texture));
         match &mut self.normal {
             Some(NormalInput::Map(texture) | NormalInput::Bump { texture, .. }) => visit(texture),
             None => {}

@@ -10,14 +10,14 @@ mod material;
 mod mesh;
 
 pub use camera::{Camera, Projection};
-pub use effects::Effects;
+pub use effects::{Effect, EffectSet, Effects, Style};
 pub use light::{Environment, Light};
 pub use material::{
     Channel, ColorInput, Emission, Material, NormalInput, ScalarInput, Surface, TextureReference,
 };
 pub use mesh::MeshData;
 
-use crate::error::Warning;
+use crate::error::{Location, Warning};
 use crate::image::Image;
 use crate::math::{DAffine3, DVec3};
 use std::path::PathBuf;
@@ -88,8 +88,12 @@ pub struct Scene {
     pub images: Vec<Arc<Image>>,
     /// Lights that are not surfaces.
     pub lights: Vec<Light>,
+    /// Where each of them is defined; empty when they come from no file.
+    pub light_locations: Vec<Location>,
     /// What surrounds the scene, if it was said.
     pub environment: Option<Environment>,
+    /// Where that is defined, if in a file.
+    pub environment_location: Option<Location>,
     /// Cameras in the order of the file; the first is the default. Empty: framed automatically.
     pub cameras: Vec<Camera>,
     /// Render settings that the scene file sets; the command line overrides them.
@@ -109,7 +113,9 @@ impl Default for Scene {
             materials: Vec::new(),
             images: Vec::new(),
             lights: Vec::new(),
+            light_locations: Vec::new(),
             environment: None,
+            environment_location: None,
             cameras: Vec::new(),
             settings: SceneSettings::default(),
             warnings: Vec::new(),

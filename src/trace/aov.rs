@@ -44,6 +44,7 @@ pub fn first_hit<A: Accelerator, F: HitFilter>(
         &start.camera.ray,
         &hit,
         start.camera.initial_width + start.camera.spread * hit.t,
+        true,
     );
     let wo = at.frame.local_from_world(-start.camera.ray.direction);
     Some(FirstHit {

@@ -1,7 +1,7 @@
 //! Stage "generate": camera rays for many paths at once, in vector instructions.
 
 use super::path::Path;
-use super::{CameraStart, RayKind, Tracer};
+use super::{BlockPaths, CameraStart, RayKind, Tracer};
 use crate::accel::Accelerator;
 use crate::camera::CameraRays;
 use crate::os::{Isa, Kernel};
@@ -17,6 +17,8 @@ pub(super) struct Starts {
     /// Columns and rows.
     pixels: [[u32; LANES]; 2],
     samples: [u64; LANES],
+    /// The cell that each pixel is watched for, or [`Path::UNWATCHED`].
+    cells: [u32; LANES],
     numbers: PathSamplers<LANES>,
     weights: [f32; LANES],
     rays: CameraRays<LANES>,
@@ -28,6 +30,7 @@ impl Starts {
             count: 0,
             pixels: [[0; LANES]; 2],
             samples: [0; LANES],
+            cells: [Path::UNWATCHED; LANES],
             numbers: PathSamplers::new(&Sampler::new(SamplerKind::default(), 0)),
             weights: [0.0; LANES],
             rays: CameraRays::NONE,
@@ -39,11 +42,18 @@ impl Starts {
         &mut self,
         tracer: &Tracer<'_, A>,
         isa: Isa,
-        block: &mut impl Iterator<Item = ([u32; 2], u64)>,
+        block: &mut BlockPaths,
         limit: usize,
     ) -> usize {
         self.count = 0;
+        let watch = block.block.watch;
+        // The samples of a pixel follow each other.
+        let mut last = ([u32::MAX; 2], Path::UNWATCHED);
         for (pixel, sample) in block.take(limit.min(LANES)) {
+            if pixel != last.0 {
+                last = (pixel, watch.cell(pixel).unwrap_or(Path::UNWATCHED));
+            }
+            self.cells[self.count] = last.1;
             self.pixels[0][self.count] = pixel[0];
             self.pixels[1][self.count] = pixel[1];
             self.samples[self.count] = sample;
@@ -64,7 +74,8 @@ impl Starts {
             let mut camera = self.rays.lane(i);
             camera.ray.id = tracer.ray_id(&sampler, 0, RayKind::Path);
             let start = CameraStart { sampler, weight: self.weights[i], camera };
-            Path::begin(&start, [self.pixels[0][i], self.pixels[1][i]], self.samples[i])
+            let pixel = [self.pixels[0][i], self.pixels[1][i]];
+            Path::begin(&start, pixel, self.samples[i], self.cells[i])
         })
     }
 }
@@ -88,7 +99,7 @@ impl<A: Accelerator> Kernel for CameraKernel<'_, '_, A> {
                 *film += pixel as f32 + 0.5;
             }
         }
-        if tracer.camera.needs_lens() {
+        if tracer.plan.pipeline.lens {
             numbers.two(|_| Dimension::Lens, &mut lens);
         }
         tracer.camera.rays(&film, &lens, rays);

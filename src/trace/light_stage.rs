@@ -4,10 +4,11 @@
 use super::batch::Batch;
 use super::group::{Entry, GroupStage};
 use super::path::Path;
-use super::{RayKind, Tracer, Vertex, power_heuristic};
+use super::{RayKind, Tracer, Vertex, direct_class, power_heuristic};
 use crate::accel::Accelerator;
 use crate::bsdf::Scatter;
 use crate::geometry::Ray;
+use crate::ledger::Events;
 use crate::math::Rgb;
 use crate::sampling::Dimension;
 
@@ -19,14 +20,14 @@ pub(super) struct LightStage<'a, 't, A> {
     /// Where on its light each vertex looks.
     pub(super) positions: &'a [[f32; 2]],
     pub(super) shadow_rays: &'a mut Batch<Ray>,
-    /// Slot, and what the light adds to it if it is visible.
-    pub(super) shadow_gains: &'a mut Batch<(u32, Rgb)>,
+    /// Slot, what the light adds to it if it is visible, and in which class.
+    pub(super) shadow_gains: &'a mut Batch<(u32, u8, Rgb)>,
 }
 
 impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
     fn visit<M: Scatter>(&mut self, group: &[Entry<M>]) {
         let world = self.tracer.world;
-        let lights = &world.lights;
+        let (lights, pipeline) = (&self.tracer.plan.lights, &self.tracer.plan.pipeline);
         for entry in group {
             let (vertex, model) = (&self.vertices[entry.vertex as usize], &entry.model);
             if model.is_delta() {
@@ -34,7 +35,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
             }
             let path = &self.slots[vertex.slot as usize];
             let bounce = path.bounce;
-            let select = match lights.needs_choice() {
+            let select = match pipeline.light_choice {
                 true => path.sampler.one(Dimension::LightSelect { bounce }),
                 false => 0.0,
             };
@@ -46,8 +47,15 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
             let value = model.evaluate(vertex.wo, wi);
             // Shading and geometric normal must agree on which side the light is, or it would leak.
             let is_same_side = (wi.z > 0.0) == (vertex.at.n_geometric.dot(light.direction) > 0.0);
-            let adds = is_same_side & !value.f_cos.is_black();
-            let weight = match light.is_delta {
+            // By transmission, the light does more than arrive straight from its source.
+            let confirmed = path.confirmed();
+            let events = match wi.z < 0.0 {
+                true => confirmed.followed_by(Events::REFRACTION),
+                false => confirmed,
+            };
+            let class = events.class().unwrap_or(direct_class(light.kind));
+            let adds = is_same_side & !value.f_cos.is_black() & pipeline.counts(events);
+            let weight = match light.is_delta | !pipeline.combination {
                 true => 1.0,
                 false => power_heuristic(light.pdf_solid_angle, value.pdf_solid_angle),
             };
@@ -60,7 +68,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
             };
             ray.id = self.tracer.ray_id(&path.sampler, bounce, RayKind::Shadow);
             self.shadow_rays.push_if(adds, ray);
-            self.shadow_gains.push_if(adds, (vertex.slot, gain));
+            self.shadow_gains.push_if(adds, (vertex.slot, class as u8, gain));
         }
     }
 }

@@ -10,6 +10,7 @@ mod group;
 mod light_stage;
 mod numbers;
 mod scatter_stage;
+mod surface_stage;
 mod wavefront;
 pub mod naive;
 mod aov;
@@ -18,10 +19,14 @@ pub use aov::{FirstHit, first_hit};
 pub use wavefront::Wavefront;
 
 use crate::accel::Accelerator;
+use crate::bsdf::LobeKind;
 use crate::camera::{Camera, CameraRay};
 use crate::filter::FilterSampler;
 use crate::geometry::PrimitiveId;
+use crate::ledger::{Class, Events, Watch};
+use crate::light::LightKind;
 use crate::math::{Rgb, Vec3};
+use crate::plan::Plan;
 use crate::sampling::{Dimension, PathSampler, Sampler};
 use crate::world::{SurfaceInteraction, World};
 
@@ -37,10 +42,8 @@ pub struct Tracer<'a, A> {
     pub filter: &'a FilterSampler,
     /// The random numbers.
     pub sampler: Sampler,
-    /// Path segments; 1 shows emitters only, `u32::MAX` is unbounded.
-    pub max_depth: u32,
-    /// Whether the environment is hidden from rays that come straight from the camera.
-    pub hide_background: bool,
+    /// What is simulated, and how lights are sampled.
+    pub plan: &'a Plan,
 }
 
 /// A rectangle of pixels and a range of samples.
@@ -54,6 +57,8 @@ pub struct Block {
     pub first_sample: u64,
     /// One past the last sample.
     pub end_sample: u64,
+    /// The pixels whose light is told apart by class.
+    pub watch: Watch,
 }
 
 impl Block {
@@ -65,7 +70,7 @@ impl Block {
 
     /// Pixel and sample of every path: all samples of a pixel, then the next pixel.
     pub fn iter(&self) -> BlockPaths {
-        let Self { start, end, first_sample, end_sample } = *self;
+        let Self { start, end, first_sample, end_sample, .. } = *self;
         let is_empty = start[0] >= end[0] || first_sample >= end_sample;
         let pixel = if is_empty { end } else { start };
         BlockPaths { block: *self, pixel, sample: first_sample }
@@ -86,7 +91,7 @@ impl Iterator for BlockPaths {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        let Block { start, end, first_sample, end_sample } = self.block;
+        let Block { start, end, first_sample, end_sample, .. } = self.block;
         if self.pixel[1] >= end[1] {
             return None;
         }
@@ -120,13 +125,43 @@ pub struct PixelSample {
     pub last_hit: PrimitiveId,
 }
 
+/// Radiance of one path by the class of its transport, times the filter's weight: adds up to its whole radiance.
+pub type ClassRadiance = [Rgb; Class::COUNT];
+
+/// Where the parts of a watched path go: its cell, and them.
+pub type Watched<'a> = Option<(u32, &'a ClassRadiance)>;
+
+/// The class of light that is scattered once.
+const fn direct_class(kind: LightKind) -> Class {
+    match kind {
+        LightKind::Point | LightKind::Spot => Class::DirectPoint,
+        LightKind::Direction | LightKind::Disc => Class::DirectSun,
+        LightKind::Surface => Class::DirectSurface,
+        LightKind::Constant | LightKind::Image => Class::DirectEnvironment,
+    }
+}
+
+/// What a lobe does to a path.
+const fn event_of(kind: LobeKind) -> Events {
+    match kind {
+        LobeKind::Diffuse => Events::DIFFUSE,
+        LobeKind::Glossy => Events::GLOSSY,
+        LobeKind::Mirror => Events::MIRROR,
+        LobeKind::Refraction => Events::REFRACTION,
+    }
+}
+
 impl<A: Accelerator> Tracer<'_, A> {
     /// The start of a path: its camera ray with the cone around it, its numbers, its filter weight.
     pub(crate) fn camera_ray(&self, pixel: [u32; 2], sample: u64) -> CameraStart {
         let sampler = self.sampler.path(pixel[0], pixel[1], sample);
         let (offset, weight) = self.filter.sample(sampler.two(Dimension::Film));
         let film = [0, 1].map(|k| offset[k] + (pixel[k] as f32 + 0.5));
-        let lens = if self.camera.needs_lens() { sampler.two(Dimension::Lens) } else { [0.5; 2] };
+        // The middle of the lens is a pinhole.
+        let lens = match self.plan.pipeline.lens {
+            true => sampler.two(Dimension::Lens),
+            false => [0.5; 2],
+        };
         let mut camera = self.camera.ray(film, lens);
         camera.ray.id = self.ray_id(&sampler, 0, RayKind::Path);
         CameraStart { sampler, weight, camera }
@@ -136,14 +171,14 @@ impl<A: Accelerator> Tracer<'_, A> {
 impl<'a, A> Tracer<'a, A> {
     /// The same paths on another accelerator, built from the same geometry.
     pub fn on<B>(&self, accelerator: &'a B) -> Tracer<'a, B> {
-        let Self { world, camera, filter, sampler, max_depth, hide_background, .. } = *self;
-        Tracer { world, accelerator, camera, filter, sampler, max_depth, hide_background }
+        let Self { world, camera, filter, sampler, plan, .. } = *self;
+        Tracer { world, accelerator, camera, filter, sampler, plan }
     }
 
     /// What hit filters know a ray by; 0 where no filter will ask.
     #[inline]
     fn ray_id(&self, numbers: &PathSampler, bounce: u32, kind: RayKind) -> u32 {
-        if self.world.has_cut_outs() { numbers.ray_id(bounce, kind as u32) } else { 0 }
+        if self.plan.pipeline.hit_filter { numbers.ray_id(bounce, kind as u32) } else { 0 }
     }
 }
 
@@ -152,6 +187,8 @@ impl<'a, A> Tracer<'a, A> {
 struct Vertex {
     /// Slot of its path.
     slot: u32,
+    /// Whether its texture coordinates are known.
+    is_detailed: bool,
     at: SurfaceInteraction,
     /// Direction back along the ray, in the shading frame.
     wo: Vec3,

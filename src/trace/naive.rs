@@ -1,19 +1,24 @@
 //! A deliberately naive path tracer: one path, recursively, for the tests to hold the wavefront against.
 //!
 //! It draws the same named numbers, so the two agree path by path. It shares the models and the world
-//! with the wavefront, and nothing of its control flow. Not for rendering.
+//! with the wavefront, and nothing of its control flow: of the plan it takes only what a user may leave out and which
+//! lights are sampled, and spares nothing. Not for rendering.
 
 use super::{RayKind, SCATTERED_SPREAD, Tracer, power_heuristic, survival_probability};
 use crate::accel::{Accelerator, HitFilter};
-use crate::bsdf::Scatter;
+use crate::bsdf::{LobeKind, Scatter};
 use crate::geometry::{Hit, Ray};
+use crate::ledger::Events;
 use crate::math::{Rgb, fun};
+use crate::plan::Pipeline;
 use crate::sampling::{Dimension, PathSampler};
 
 /// What a ray carries along in the recursion.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct State {
     bounce: u32,
+    /// What happened at each vertex so far.
+    history: Vec<LobeKind>,
     throughput: Rgb,
     eta_scale: f32,
     /// Density of the ray's direction; `None` where light sampling could not have found it.
@@ -32,6 +37,7 @@ pub fn radiance<A: Accelerator, F: HitFilter>(
     let start = tracer.camera_ray(pixel, sample);
     let state = State {
         bounce: 0,
+        history: Vec::new(),
         throughput: Rgb::WHITE,
         eta_scale: 1.0,
         pdf: None,
@@ -54,34 +60,45 @@ fn incoming<A: Accelerator, F: HitFilter>(
     let mut hit = [Hit::MISS];
     tracer.accelerator.closest(&[ray], filter, &mut hit);
     let hit = hit[0];
+    let (pipeline, lights) = (&tracer.plan.pipeline, &tracer.plan.lights);
     let mis = |pdf_light: f32| state.pdf.map_or(1.0, |pdf| power_heuristic(pdf, pdf_light));
+    let met = |is_seen: bool| match state.history.split_last() {
+        None => is_seen,
+        Some((LobeKind::Diffuse | LobeKind::Glossy, before)) => {
+            counts(before, pipeline) && pipeline.scatter_sampling
+        }
+        Some(_) => {
+            counts(&state.history, pipeline) && (state.pdf.is_none() || pipeline.scatter_sampling)
+        }
+    };
     if !hit.is_hit() {
-        if tracer.hide_background && bounce == 0 {
+        if !met(pipeline.environment_seen) {
             return Rgb::BLACK;
         }
-        let seen = world.lights.at_infinity(ray.direction);
-        return seen.fold(Rgb::BLACK, |sum, (l, pdf)| sum + l * mis(pdf));
+        let seen = lights.at_infinity(world, ray.direction);
+        return seen.fold(Rgb::BLACK, |sum, (_, l, pdf)| sum + l * mis(pdf));
     }
     let transmitted = (state.absorption * -hit.t).map(fun::exp);
     state.cone[0] += state.cone[1] * hit.t;
-    let at = world.interact(&ray, &hit, state.cone[0]);
+    let at = world.interact(&ray, &hit, state.cone[0], true);
 
     // Emission.
     let distance = (at.point - ray.origin).length();
     let cos_theta = at.n_geometric.dot(ray.direction);
-    let pdf_light = world.lights.pdf_of_emitter(at.material, distance, cos_theta);
-    let mut radiance = world.emitted(&at) * mis(pdf_light);
-    if bounce + 1 >= tracer.max_depth {
+    let pdf_light = lights.pdf_of_emitter(at.material, distance, cos_theta);
+    let is_seen = met(pipeline.emission_seen);
+    let mut radiance = if is_seen { world.emitted(&at) * mis(pdf_light) } else { Rgb::BLACK };
+    if bounce + 1 >= pipeline.max_depth || !is_allowed(&state.history, pipeline) {
         return transmitted * radiance;
     }
 
     // Direct light.
     let bsdf = world.bsdf(&at);
     let wo = at.frame.local_from_world(-ray.direction);
-    if !bsdf.is_delta() && !world.lights.is_empty() {
+    if !bsdf.is_delta() && pipeline.light_sampling {
         let select = numbers.one(Dimension::LightSelect { bounce });
         let position = numbers.two(Dimension::LightPosition { bounce });
-        if let Some(light) = world.lights.sample(world, at.point, select, position) {
+        if let Some(light) = lights.sample(world, at.point, select, position) {
             let wi = at.frame.local_from_world(light.direction);
             let value = bsdf.evaluate(wo, wi);
             let same_side = (wi.z > 0.0) == (at.n_geometric.dot(light.direction) > 0.0);
@@ -93,8 +110,11 @@ fn incoming<A: Accelerator, F: HitFilter>(
             let id = tracer.ray_id(numbers, bounce, RayKind::Shadow);
             let mut blocked = [false];
             tracer.accelerator.occluded(&[Ray { id, ..segment }], filter, &mut blocked);
-            if same_side && !blocked[0] {
-                let weight = match light.is_delta {
+            let mut history = state.history.clone();
+            history.extend((wi.z < 0.0).then_some(LobeKind::Refraction));
+            let is_blocked = blocked[0] && pipeline.shadows;
+            if same_side && !is_blocked && counts(&history, pipeline) {
+                let weight = match light.is_delta || !pipeline.scatter_sampling {
                     true => 1.0,
                     false => power_heuristic(light.pdf_solid_angle, value.pdf_solid_angle),
                 };
@@ -121,9 +141,13 @@ fn incoming<A: Accelerator, F: HitFilter>(
     }
     let crossed = sample.wi.z < 0.0;
     let inside = world.absorption(at.material).filter(|_| at.entering).unwrap_or(Rgb::BLACK);
+    let inside = if pipeline.absorption { inside } else { Rgb::BLACK };
+    let mut history = state.history;
+    history.push(sample.kind);
     let spread = if sample.is_delta { 0.0 } else { SCATTERED_SPREAD };
     let next = State {
         bounce: bounce + 1,
+        history,
         throughput: throughput * (1.0 / survival),
         eta_scale,
         pdf: (!sample.is_delta).then_some(sample.pdf_solid_angle),
@@ -134,4 +158,24 @@ fn incoming<A: Accelerator, F: HitFilter>(
     let ray = Ray { id, ..Ray::new(at.origin_towards(wi), wi) };
     let scattered = incoming(tracer, filter, numbers, ray, next);
     transmitted * (radiance + sample.weight * scattered * (1.0 / survival))
+}
+
+/// Whether all of this may happen to one path.
+fn is_allowed(history: &[LobeKind], pipeline: &Pipeline) -> bool {
+    let is_rough = |kind: &LobeKind| matches!(kind, LobeKind::Diffuse | LobeKind::Glossy);
+    let first_rough = history.iter().position(is_rough).unwrap_or(history.len());
+    let has_caustic = history[first_rough..].iter().any(|kind| !is_rough(kind));
+    let has = |event: Events| event.are_within(pipeline.events);
+    let each = history.iter().all(|kind| match kind {
+        LobeKind::Diffuse => has(Events::DIFFUSE),
+        LobeKind::Glossy => has(Events::GLOSSY),
+        LobeKind::Mirror => has(Events::MIRROR),
+        LobeKind::Refraction => has(Events::REFRACTION),
+    });
+    each && (!has_caustic || has(Events::CAUSTIC))
+}
+
+/// Whether light that then arrives by a rough reflection, or straight, counts.
+fn counts(history: &[LobeKind], pipeline: &Pipeline) -> bool {
+    is_allowed(history, pipeline) && (pipeline.direct || !history.is_empty())
 }

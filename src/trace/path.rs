@@ -1,8 +1,12 @@
 //! The state of one path between two stages of the wavefront.
 
-use super::CameraStart;
+use super::{CameraStart, ClassRadiance, direct_class, event_of};
+use crate::bsdf::LobeKind;
 use crate::geometry::{PrimitiveId, Ray};
+use crate::ledger::{Class, Events};
+use crate::light::LightKind;
 use crate::math::Rgb;
+use crate::plan::Pipeline;
 use crate::sampling::PathSampler;
 
 /// State of one path; it stays in its slot while it lives.
@@ -20,6 +24,16 @@ pub(super) struct Path {
     pub(super) bounce: u32,
     /// Density per solid angle with which the ray's direction was scattered.
     pub(super) pdf_solid_angle: f32,
+    /// What happened to it at the vertices before its last one, and what happened there, unless it is sharp: that
+    /// counts only once the ray meets a surface that is no light.
+    pub(super) events: Events,
+    pub(super) pending: Events,
+    /// It may meet a light, and does not go on from where it meets a surface.
+    pub(super) only_looks_for_lights: bool,
+    /// The class that its ray is counted in.
+    pub(super) ray_class: Class,
+    /// The cell whose light is told apart by class, or [`Path::UNWATCHED`].
+    pub(super) cell: u32,
     /// Whether light sampling could not have found the ray's direction: its emission counts in full.
     pub(super) is_delta: bool,
     /// Undoes the radiance factor of refractions for Russian roulette.
@@ -43,9 +57,63 @@ pub(super) struct Path {
 }
 
 impl Path {
+    /// No cell.
+    pub(super) const UNWATCHED: u32 = u32::MAX;
+
+    /// Adds light of a class; `parts` are those of its slot.
+    #[inline(always)]
+    pub(super) fn add(&mut self, gain: Rgb, class: Class, parts: &mut ClassRadiance) {
+        self.radiance += gain;
+        if self.cell != Self::UNWATCHED {
+            parts[class as usize] += gain;
+        }
+    }
+
+    /// What has happened to it where it leaves its last vertex for another surface.
+    #[inline]
+    pub(super) fn confirmed(&self) -> Events {
+        self.events.followed_by(self.pending)
+    }
+
+    /// Takes down what the path's last vertex does to it; whether it has any use for the next ray.
+    #[inline]
+    pub(super) fn happens(&mut self, kind: LobeKind, is_delta: bool, pipeline: &Pipeline) -> bool {
+        let confirmed = self.confirmed();
+        let event = event_of(kind);
+        let after = confirmed.followed_by(event);
+        let is_allowed = after.are_within(pipeline.events);
+        // Of a sharp event both ways of finding lights know: it counts whatever the next ray meets.
+        let is_sharp = is_delta || kind == LobeKind::Refraction;
+        (self.events, self.pending) =
+            if is_sharp { (after, Events::NONE) } else { (confirmed, event) };
+        self.only_looks_for_lights = !is_allowed;
+        self.ray_class = after.class().unwrap_or(Class::Seen);
+
+        let may_meet_light = pipeline.emission || pipeline.environment;
+        let finds_lights = may_meet_light
+            && (is_delta || pipeline.scatter_sampling)
+            && pipeline.counts(self.events);
+        let has_room = self.bounce + 2 < pipeline.max_depth;
+        finds_lights || is_allowed && has_room
+    }
+
+    /// The class of the light of this kind that its ray meets; `None` where that does not count.
+    #[inline]
+    pub(super) fn class_of_met(&self, kind: LightKind, pipeline: &Pipeline) -> Option<Class> {
+        if self.bounce == 0 {
+            let is_seen = match kind {
+                LightKind::Surface => pipeline.emission_seen,
+                _ => pipeline.environment_seen,
+            };
+            return is_seen.then_some(Class::Seen);
+        }
+        let counts = pipeline.counts(self.events) && (self.is_delta || pipeline.scatter_sampling);
+        counts.then(|| self.events.class().unwrap_or(direct_class(kind)))
+    }
+
     /// The path that starts with a camera ray.
     #[inline]
-    pub(super) fn begin(start: &CameraStart, pixel: [u32; 2], sample: u64) -> Self {
+    pub(super) fn begin(start: &CameraStart, pixel: [u32; 2], sample: u64, cell: u32) -> Self {
         Self {
             ray: start.camera.ray,
             throughput: Rgb::WHITE,
@@ -55,6 +123,11 @@ impl Path {
             pdf_solid_angle: 0.0,
             // No light is sampled for the camera: what it sees counts in full.
             is_delta: true,
+            events: Events::NONE,
+            pending: Events::NONE,
+            only_looks_for_lights: false,
+            ray_class: Class::Seen,
+            cell,
             eta_scale: 1.0,
             cone_width: start.camera.initial_width,
             cone_spread: start.camera.spread,

@@ -62,9 +62,13 @@ fn scatter<M: Scatter, A: Accelerator>(
     if path.throughput.is_black() {
         return false;
     }
+    if !path.happens(sample.kind, sample.is_delta, &tracer.plan.pipeline) {
+        return false;
+    }
     if sample.wi.z < 0.0 {
         let inside = tracer.world.absorption(vertex.at.material);
-        path.absorption = inside.filter(|_| vertex.at.entering).unwrap_or(Rgb::BLACK);
+        let keeps = vertex.at.entering && tracer.plan.pipeline.absorption;
+        path.absorption = inside.filter(|_| keeps).unwrap_or(Rgb::BLACK);
     }
     if !sample.is_delta {
         path.cone_spread += SCATTERED_SPREAD;

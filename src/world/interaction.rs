@@ -6,7 +6,7 @@
 
 use super::material::{lookup, wrap_of};
 use super::{SurfaceMesh, World};
-use crate::geometry::{Hit, NONE, Ray};
+use crate::geometry::{Hit, NONE, PrimitiveId, Ray};
 use crate::math::{Frame, Vec3};
 use crate::scene::{MaterialId, NormalInput, TextureReference};
 
@@ -40,11 +40,34 @@ impl SurfaceInteraction {
     }
 }
 
+/// Where texture coordinates, footprints and normal maps are worked out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Details {
+    /// Nowhere: no material looks anything up.
+    Nowhere,
+    /// On surfaces whose material looks something up.
+    WhereNeeded,
+    /// Everywhere.
+    Everywhere,
+}
+
 impl World {
-    /// Expands `hit`, which must be one, of `ray`, whose cone is `width` wide there.
+    /// Whether the surface that `id` is on is to be expanded with its details.
+    #[inline]
+    pub fn is_detailed(&self, id: PrimitiveId, details: Details) -> bool {
+        match details {
+            Details::Nowhere => false,
+            Details::WhereNeeded => self.needs_uv[self.material_id(id).index()],
+            Details::Everywhere => true,
+        }
+    }
+
+    /// Expands `hit`, which must be one, of `ray`, whose cone is `width` wide there. Without `detailed`, there are
+    /// no texture coordinates, and none of what depends on them.
     #[inline(always)]
-    pub fn interact(&self, ray: &Ray, hit: &Hit, width: f32) -> SurfaceInteraction {
-        let mirrored = hit.id.instance != NONE && self.instances[hit.id.instance as usize].1;
+    pub fn interact(&self, ray: &Ray, hit: &Hit, width: f32, detailed: bool) -> SurfaceInteraction {
+        let mirrored =
+            hit.id.instance != NONE && self.surfaces.instances[hit.id.instance as usize].1;
         let outward = if mirrored { -hit.normal } else { hit.normal };
         let entering = outward.dot(ray.direction) < 0.0;
         let n_geometric = if entering { outward } else { -outward };
@@ -57,7 +80,7 @@ impl World {
             n_shading = self.interpolated_normal(surface, hit, n_geometric);
         }
         let mut mapped = Mapped { uv: [0.0; 2], footprint: 0.0, n_shading };
-        if !surface.uvs.is_empty() {
+        if detailed && !surface.uvs.is_empty() {
             let normals = [n_geometric, n_shading];
             mapped = self.mapped(surface, ray, hit, width, normals, material);
         }

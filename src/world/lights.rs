@@ -1,98 +1,77 @@
-//! All lights of a world in one list, chosen in proportion to their power.
+//! All lights of a world in one list.
 //!
-//! Emissive triangles and the lights of `light` share one alias table, whose weights are estimates of
-//! emitted (or, at infinity, received) power; picking one costs the same for one light and for a
-//! million. Source: pbrt 4th ed., section 12.6.2 (power light sampler).
+//! Emissive triangles and the lights of `light` are counted through: those without a surface first. Each has a
+//! weight, an estimate of the power that it emits or, at infinity, sends to the scene. Which of them are sampled
+//! is not decided here.
 
 use super::World;
-use crate::error::Result;
-use crate::geometry::{NONE, PrimitiveId, offset_distance};
+use crate::error::{Location, Result};
+use crate::geometry::{NONE, PrimitiveId};
 use crate::image::Image;
 use crate::light::{
-    ConstantEnvironment, DirectionalLight, ImageEnvironment, Light, PointLight, Sky, SkyParameters,
-    SpotLight, orientation, triangle,
+    ConstantEnvironment, DirectionalLight, ImageEnvironment, Light, LightKind, PointLight, Sky,
+    SkyParameters, SpotLight, orientation, triangle,
 };
 use crate::math::{DVec3, Rgb, Vec3};
-use crate::sampling::AliasTable;
 use crate::scene::{self, Environment, MaterialId, Scene};
+use std::sync::Arc;
 
 /// An emissive triangle in world space.
-struct Emitter {
-    vertices: [Vec3; 3],
-    id: PrimitiveId,
-    material: MaterialId,
-}
-
-/// Every light, and how to choose one.
-#[derive(Default)]
-pub struct Lights {
-    /// Lights without a surface; choices below their number mean them.
-    lights: Vec<Light>,
-    /// Emissive triangles; choices from there on.
-    emitters: Vec<Emitter>,
-    selection: AliasTable,
-    /// For each material: the density per area with which a point of its triangles is chosen.
-    pdf_area: Vec<f32>,
-}
-
-/// A light as seen from a point.
 #[derive(Clone, Copy, Debug)]
-pub struct LightToSample {
-    /// Unit direction to it.
-    pub direction: Vec3,
-    /// The end of the shadow segment, already clear of the light's own surface; `None` at infinity.
-    pub end: Option<Vec3>,
-    /// Radiance from there; of a delta light, the irradiance on a facing surface.
-    pub radiance: Rgb,
-    /// Density per solid angle, with the choice of the light in it; of a delta light, the probability
-    /// of the choice alone.
-    pub pdf_solid_angle: f32,
-    /// No other strategy can find it.
-    pub is_delta: bool,
+pub(super) struct Emitter {
+    pub(super) vertices: [Vec3; 3],
+    pub(super) id: PrimitiveId,
+    pub(super) material: MaterialId,
+}
+
+/// Every light.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    /// Lights without a surface, and where each is defined.
+    pub(super) lights: Arc<[(Light, Option<Location>)]>,
+    /// Places in `lights` of those that rays which leave the scene see.
+    at_infinity: Vec<usize>,
+    /// Emissive triangles.
+    pub(super) emitters: Arc<[Emitter]>,
+    /// Luminance of the power of each of `lights`.
+    power: Vec<f32>,
+    /// Luminance of the mean emitted radiance of each material.
+    luminance: Vec<f32>,
 }
 
 impl Lights {
     /// Collects the lights of `scene`, whose surfaces are compiled in `world`.
     pub(super) fn compile(world: &World, scene: &Scene) -> Result<Self> {
         let mut lights = Vec::new();
-        for light in &scene.lights {
-            lights.push(compile_light(light, world.origin)?);
+        for (i, light) in scene.lights.iter().enumerate() {
+            let location = scene.light_locations.get(i).cloned();
+            lights.push((compile_light(light, world.origin)?, location));
         }
         if let Some(environment) = &scene.environment {
-            lights.extend(compile_environment(environment, scene)?);
+            let location = &scene.environment_location;
+            let parts = compile_environment(environment, scene)?.into_iter();
+            lights.extend(parts.map(|light| (light, location.clone())));
         }
-        let emitters = emitters(world);
+        Ok(Self::new(lights, emitters(world), world))
+    }
 
-        // One weight a choice: power, so that what lights more is asked more often.
+    /// A constant environment of radiance 1, and no other light.
+    pub(super) fn white_surroundings(world: &World) -> Result<Self> {
+        let white = Light::Constant(ConstantEnvironment::new(Rgb::WHITE)?);
+        Ok(Self::new(vec![(white, None)], Vec::new(), world))
+    }
+
+    fn new(lights: Vec<(Light, Option<Location>)>, emitters: Vec<Emitter>, world: &World) -> Self {
         let radius = world.bounds.bounding_radius();
-        let luminance: Vec<f32> = (0..world.materials.len())
-            .map(|i| world.mean_emission(MaterialId(i as u32)).luminance())
-            .collect();
-        let of_lights = lights.iter().map(|l| f64::from(l.power_estimate(radius)));
-        let of_emitters = emitters.iter().map(|e| {
-            let area = triangle::area(&e.vertices);
-            f64::from(triangle::power_estimate(area, luminance[e.material.index()]))
-        });
-        let weights: Vec<f64> = of_lights.chain(of_emitters).collect();
-        let total: f64 = weights.iter().sum();
-        // Power is linear in area, so the density per area depends on the material alone.
-        let pdf_area = luminance
-            .iter()
-            .map(|&l| (f64::from(triangle::power_estimate(1.0, l)) / total) as f32)
-            .map(|pdf| if pdf.is_finite() { pdf } else { 0.0 })
-            .collect();
-        Ok(Self { lights, emitters, selection: AliasTable::new(&weights), pdf_area })
-    }
-
-    /// Whether light sampling can find nothing.
-    pub fn is_empty(&self) -> bool {
-        self.selection.is_empty()
-    }
-
-    /// Whether [`Lights::sample`] depends on `select`: not where there is one light only.
-    #[inline]
-    pub fn needs_choice(&self) -> bool {
-        self.selection.len() > 1
+        let mean = |i: usize| world.mean_emission(MaterialId(i as u32)).luminance();
+        let is_far = |&i: &usize| lights[i].0.is_seen_at_infinity();
+        Self {
+            at_infinity: (0..lights.len()).filter(is_far).collect(),
+            power: lights.iter().map(|(light, _)| light.power_estimate(radius)).collect(),
+            luminance: (0..world.materials.len()).map(mean).collect(),
+            lights: lights.into(),
+            emitters: emitters.into(),
+        }
     }
 
     /// Number of emissive triangles.
@@ -100,85 +79,38 @@ impl Lights {
         self.emitters.len()
     }
 
-    /// Chooses a light by `select`, and a direction to it from `point` by `position`. `None` where the
-    /// chosen light sends nothing. There must be a light.
-    #[inline(always)]
-    pub fn sample(
-        &self,
-        world: &World,
-        point: Vec3,
-        select: f32,
-        position: [f32; 2],
-    ) -> Option<LightToSample> {
-        let (choice, probability) = self.selection.sample(select);
-        if choice >= self.lights.len() {
-            return sample_emitter(
-                world,
-                &self.emitters[choice - self.lights.len()],
-                point,
-                probability,
-                position,
-            );
-        }
-        let sample = self.lights[choice].sample(point, position)?;
-        Some(LightToSample {
-            direction: sample.direction,
-            end: sample.distance.is_finite().then(|| point + sample.direction * sample.distance),
-            radiance: sample.radiance,
-            pdf_solid_angle: sample.pdf_solid_angle * probability,
-            is_delta: sample.is_delta,
-        })
+    /// The lights without a surface that send anything: kind, and where it is defined.
+    pub(super) fn lit(&self) -> impl Iterator<Item = (LightKind, &Option<Location>)> {
+        let is_lit = |i: &usize| self.power[*i] > 0.0;
+        let lit = (0..self.lights.len()).filter(is_lit);
+        lit.map(|i| (self.lights[i].0.kind(), &self.lights[i].1))
     }
 
-    /// Density per solid angle with which [`Lights::sample`] finds a point of an emissive triangle of
-    /// `material`, `distance` away, seen under `cos_theta` with its normal.
+    /// Kind of the light number `i`.
+    pub(super) fn kind(&self, i: usize) -> LightKind {
+        self.lights.get(i).map_or(LightKind::Surface, |(light, _)| light.kind())
+    }
+
+    /// One weight a light: its power, so that what lights more is asked more often.
+    pub(super) fn weights(&self) -> impl Iterator<Item = f64> {
+        let of_lights = self.power.iter().map(|&power| f64::from(power));
+        of_lights.chain(self.emitters.iter().map(|emitter| {
+            let area = triangle::area(&emitter.vertices);
+            let luminance = self.luminance[emitter.material.index()];
+            f64::from(triangle::power_estimate(area, luminance))
+        }))
+    }
+
+    /// For each material the weight of a triangle of area 1: weights are linear in area.
+    pub(super) fn weights_per_area(&self) -> impl Iterator<Item = f64> {
+        self.luminance.iter().map(|&l| f64::from(triangle::power_estimate(1.0, l)))
+    }
+
+    /// The lights that rays which leave the scene see, each with its number.
     #[inline]
-    pub fn pdf_of_emitter(&self, material: MaterialId, distance: f32, cos_theta: f32) -> f32 {
-        triangle::pdf_solid_angle(self.pdf_area[material.index()], distance, cos_theta)
+    pub(super) fn at_infinity(&self) -> impl Iterator<Item = (usize, &Light)> {
+        self.at_infinity.iter().map(|&i| (i, &self.lights[i].0))
     }
-
-    /// What a ray that leaves the scene along the unit vector `direction` sees of each light at
-    /// infinity: radiance, and the density per solid angle with which [`Lights::sample`] finds it.
-    #[inline]
-    pub fn at_infinity(&self, direction: Vec3) -> impl Iterator<Item = (Rgb, f32)> {
-        self.lights.iter().enumerate().filter(|(_, light)| light.is_seen_at_infinity()).map(
-            move |(i, light)| {
-                let (radiance, pdf) = light.radiance_and_pdf(direction);
-                (radiance, pdf * self.selection.pmf(i))
-            },
-        )
-    }
-}
-
-fn sample_emitter(
-    world: &World,
-    emitter: &Emitter,
-    point: Vec3,
-    probability: f32,
-    position: [f32; 2],
-) -> Option<LightToSample> {
-    let [a, b, c] = emitter.vertices;
-    let (on_light, [u, v]) = triangle::sample_area(&emitter.vertices, position);
-    let area_vector = (b - a).cross(c - a);
-    let double_area = area_vector.length();
-    let normal = area_vector / double_area;
-    let to_light = on_light - point;
-    let distance = to_light.length();
-    let direction = to_light / distance;
-    let cos_theta = direction.dot(normal);
-    let pdf_area = probability * 2.0 / double_area;
-    let pdf_solid_angle = triangle::pdf_solid_angle(pdf_area, distance, cos_theta);
-    // Edge-on, or the point itself: carries nothing.
-    if !(pdf_solid_angle.is_finite() && pdf_solid_angle > 0.0) {
-        return None;
-    }
-    let uv = world.uv(emitter.id, u, v);
-    let emission = world.material(emitter.material).emission?;
-    let radiance = world.color(&emission.radiance, uv, 0.0) * world.opacity(emitter.material, uv);
-    // The segment ends on the side of the light that faces the point.
-    let offset = offset_distance(on_light, &emitter.vertices.map(Vec3::as_dvec3), 0.0);
-    let end = on_light - normal * offset.copysign(cos_theta);
-    Some(LightToSample { direction, end: Some(end), radiance, pdf_solid_angle, is_delta: false })
 }
 
 /// Every triangle whose material emits.

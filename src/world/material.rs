@@ -147,6 +147,18 @@ pub(super) fn wrap_of(texture: &TextureReference) -> Wrap {
     if texture.clamp { Wrap::Clamp } else { Wrap::Repeat }
 }
 
+/// For each material, whether its textures or maps are looked up when it is shaded. (Hit filters look up what is
+/// cut out by themselves.)
+pub(super) fn needs_uv(materials: &[Material]) -> Vec<bool> {
+    let of = |material: &Material| {
+        let mut shaded = Material { opacity: ScalarInput::constant(1.0), ..material.clone() };
+        let mut textures = 0;
+        shaded.for_each_texture(|_| textures += 1);
+        textures > 0
+    };
+    materials.iter().map(of).collect()
+}
+
 /// An alpha cut-out by an image without alpha cuts nothing out: such a texture is dropped here, so
 /// that its triangles need no filter.
 pub(super) fn drop_alpha_of_opaque_images(material: &mut Material, textures: &[MipMap]) {

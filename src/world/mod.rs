@@ -3,15 +3,20 @@
 //! `World::compile` consumes what the files said. Everything a path asks for is here: the geometry for
 //! the accelerator, the interaction at a hit, the BSDF there, and the lights. It traces no rays.
 
+mod census;
 mod cut_out;
 mod interaction;
+mod light_sampler;
 mod lights;
 mod material;
 mod place;
+mod variant;
 
+pub use census::{Census, Feature, Witness};
 pub use cut_out::CutOuts;
-pub use interaction::SurfaceInteraction;
-pub use lights::{LightToSample, Lights};
+pub use interaction::{Details, SurfaceInteraction};
+pub use light_sampler::{LightSampler, LightToSample};
+pub use lights::Lights;
 
 use crate::camera::{Camera, View};
 use crate::error::{Error, Result, Warning};
@@ -22,7 +27,8 @@ use crate::texture::MipMap;
 use place::SurfaceMesh;
 use std::sync::Arc;
 
-/// A scene that is ready to be rendered.
+/// A scene that is ready to be rendered. Clones share what is large.
+#[derive(Clone)]
 pub struct World {
     /// What an accelerator is built from; coordinates are relative to `origin`.
     pub geometry: Arc<Geometry>,
@@ -36,11 +42,18 @@ pub struct World {
     pub warnings: Vec<Warning>,
     has_cut_outs: bool,
     materials: Vec<Material>,
-    textures: Vec<MipMap>,
+    /// For each material: whether anything about it depends on texture coordinates.
+    needs_uv: Vec<bool>,
+    textures: Arc<Vec<MipMap>>,
+    surfaces: Arc<Surfaces>,
+}
+
+/// What the shading of all triangles needs, parallel to the geometry.
+struct Surfaces {
     /// Attributes of `geometry.meshes`.
-    surfaces: Vec<SurfaceMesh>,
+    own: Vec<SurfaceMesh>,
     /// Attributes of the meshes of each of `geometry.objects`.
-    object_surfaces: Vec<Vec<SurfaceMesh>>,
+    objects: Vec<Vec<SurfaceMesh>>,
     /// For each instance: its material override, and whether it mirrors.
     instances: Vec<(Option<MaterialId>, bool)>,
 }
@@ -75,11 +88,14 @@ impl World {
             bounds,
             lights: Lights::default(),
             warnings: Vec::new(),
+            needs_uv: material::needs_uv(&materials),
             materials,
-            textures,
-            surfaces: placed.surfaces,
-            object_surfaces: placed.object_surfaces,
-            instances: placed.instances,
+            textures: Arc::new(textures),
+            surfaces: Arc::new(Surfaces {
+                own: placed.surfaces,
+                objects: placed.object_surfaces,
+                instances: placed.instances,
+            }),
         };
         let lit = !scene.lights.is_empty()
             || scene.environment.is_some()
@@ -134,7 +150,7 @@ impl World {
     fn overridden(&self, id: PrimitiveId, own: MaterialId) -> MaterialId {
         match id.instance {
             NONE => own,
-            instance => self.instances[instance as usize].0.unwrap_or(own),
+            instance => self.surfaces.instances[instance as usize].0.unwrap_or(own),
         }
     }
 
@@ -174,10 +190,10 @@ impl World {
     #[inline]
     fn surface(&self, id: PrimitiveId) -> &SurfaceMesh {
         if id.instance == NONE {
-            &self.surfaces[id.geometry as usize]
+            &self.surfaces.own[id.geometry as usize]
         } else {
             let object = self.geometry.instances[id.instance as usize].object;
-            &self.object_surfaces[object as usize][id.geometry as usize]
+            &self.surfaces.objects[object as usize][id.geometry as usize]
         }
     }
 }

@@ -4,7 +4,7 @@
 
 use crate::support::scenes::{cornell, cornell_shot, zoo, zoo_shot};
 use glint::accel::AcceptAll;
-use glint::trace::{Block, Wavefront};
+use glint::trace::Wavefront;
 use glint::world::CutOuts;
 
 #[test]
@@ -12,15 +12,15 @@ fn the_bounce_loop_allocates_nothing() {
     for (world, shot) in
         [(cornell().build(), cornell_shot([32, 32], 4)), (zoo().build(), zoo_shot([32, 32], 4))]
     {
-        let block = Block { start: [0, 0], end: shot.size, first_sample: 0, end_sample: shot.spp };
+        let block = shot.block();
         shot.with_tracer(&world, |tracer| {
             let mut wavefront = Wavefront::new(Wavefront::DEFAULT_BATCH);
             let mut sum = 0.0;
             let mut run = || match world.has_cut_outs() {
                 true => {
-                    wavefront.run(tracer, &CutOuts::new(&world), &block, |s| sum += s.radiance.r)
+                    wavefront.run(tracer, &CutOuts::new(&world), &block, |s, _| sum += s.radiance.r)
                 }
-                false => wavefront.run(tracer, &AcceptAll, &block, |s| sum += s.radiance.r),
+                false => wavefront.run(tracer, &AcceptAll, &block, |s, _| sum += s.radiance.r),
             };
             run();
             let second = allocation_counter::measure(run);

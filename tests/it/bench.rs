@@ -33,6 +33,7 @@ fn cameras(world: &World) -> [Camera; 2] {
     let (to, radius) = (world.bounds.center().as_dvec3(), world.bounds.bounding_radius());
     [2.0, 1.0].map(|far| Camera {
         name: "test".into(),
+        location: None,
         from: world.origin + to + DVec3::new(0.3, 0.8, 0.5) * f64::from(far * radius),
         to: world.origin + to,
         up: DVec3::Y,

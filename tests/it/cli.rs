@@ -97,8 +97,16 @@ fn an_unknown_name_gets_the_names_there_are_and_the_likeliest() {
     let scene = format!("{scene}[[object]]\nfile = 'model.obj'\n");
     bench.file("model.obj", TRIANGLE).file("scene.toml", scene);
     for (option, name, words) in [
-        ("--effects", "pth", ["unknown effects `pth`", "did you mean `path`?", "Known: `path`"]),
-        ("--effects", "whitted", ["unknown effects `whitted`", "Known:", "`path`"]),
+        (
+            "--effects",
+            "pth",
+            ["unknown effects `pth`", "did you mean `path`?", "Known: `auto`, `all`"],
+        ),
+        (
+            "--effects",
+            "all,no-glosy",
+            ["unknown effects `glosy`", "did you mean `glossy`?", "`mirror`"],
+        ),
         (
             "--sampler",
             "sobel",
@@ -121,14 +129,20 @@ fn an_unknown_name_gets_the_names_there_are_and_the_likeliest() {
 #[test]
 fn effects_are_said_by_word_or_by_file() {
     let bench = Bench::new();
-    let scene = "[render]\neffects = 'path'\n[[object]]\nfile = 'model.obj'\n";
+    let scene = "[render]\neffects = 'all,no-refraction'\n[[object]]\nfile = 'model.obj'\n";
     bench.file("model.obj", TRIANGLE).file("scene.toml", scene);
-    for arguments in [&["model.obj"][..], &["model.obj", "--effects", "path"], &["scene.toml"]] {
+    for (arguments, effects) in [
+        (&["model.obj"][..], "auto"),
+        (&["model.obj", "--effects", "path"], "auto"),
+        (&["model.obj", "--effects", "whitted,no-mirror"], "auto,no-diffuse"),
+        (&["scene.toml"], "all,no-refraction"),
+        (&["scene.toml", "--effects", "direct"], "direct"),
+    ] {
         let (code, said) = bench.render(&[arguments, &["-o", "a.exr"]].concat());
         assert_eq!(code, 0, "{said}");
-        assert!(said.contains("effects path"), "{said}");
+        assert!(said.contains(&format!("effects {effects}")), "{said}");
     }
-    bench.file("scene.toml", scene.replace("path", "paths"));
+    bench.file("scene.toml", scene.replace("all,no-refraction", "paths"));
     let (code, said) = bench.render(&["scene.toml"]);
     assert_eq!(code, 1);
     assert!(said.contains("scene.toml:2: unknown effects `paths`; did you mean `path`?"), "{said}");

@@ -97,6 +97,7 @@ fn values_arrive_as_written() {
     // Cameras keep the order of the file, and the focus is on `to`.
     let expected = Camera {
         name: "b".to_owned(),
+        location: scene.cameras[0].location.clone(),
         from: DVec3::new(1.0, 2.0, 3.0),
         to: DVec3::new(1.0, 2.0, -1.0),
         up: DVec3::Y,

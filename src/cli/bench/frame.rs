@@ -6,6 +6,7 @@ use super::super::select::{self, Settings};
 use crate::camera::Camera;
 use crate::error::Result;
 use crate::filter::FilterSampler;
+use crate::plan::Plan;
 use crate::study::bench::{self, FrameFindings, FrameSettings, Tell, frame};
 use crate::world::World;
 use std::path::Path;
@@ -13,6 +14,7 @@ use std::path::Path;
 /// A scene, its camera, and how renders of it are set.
 pub(super) struct FrameScene {
     world: World,
+    plan: Plan,
     camera: Camera,
     settings: Settings,
 }
@@ -32,8 +34,9 @@ impl FrameScene {
         let (cameras, up) = (std::mem::take(&mut scene.cameras), scene.up);
         let world = World::compile(scene)?;
         report::warnings(&said, &world.warnings);
-        let (camera, _) = select::camera(&said, &cameras, up, &world, settings.size)?;
-        Ok(Self { world, camera, settings })
+        let (camera, description) = select::camera(&said, &cameras, up, &world, settings.size)?;
+        let (world, plan) = settings.plan(&world, &description, false)?;
+        Ok(Self { world, plan, camera, settings })
     }
 
     /// Races frames of it; `name` is what the findings call it.
@@ -43,7 +46,7 @@ impl FrameScene {
         race: &bench::Settings,
         tell: Tell<'_>,
     ) -> Result<FrameFindings> {
-        let Self { world, camera, settings } = self;
+        let Self { world, plan, camera, settings } = self;
         let filter = FilterSampler::new(settings.filter);
         let frames = FrameSettings {
             size: settings.size,
@@ -54,6 +57,6 @@ impl FrameScene {
             time: race.time,
             build: race.build,
         };
-        frame(name, &settings.tracer(world, camera, &filter), &frames, tell)
+        frame(name, &settings.tracer(world, plan, camera, &filter), &frames, tell)
     }
 }

@@ -35,7 +35,7 @@ pub(super) fn assemble(document: &Document, source: Source, options: LoadOptions
     for (name, camera) in document.camera.iter() {
         scene.cameras.push(camera.camera(name, scene.up, source)?);
     }
-    scene.lights = document.light.lights(source)?;
+    (scene.lights, scene.light_locations) = document.light.lights(source)?.into_iter().unzip();
     scene.warnings.extend(unplaced.into_iter().map(|name| {
         source.warning(name.span(), format!("model `{}` is never placed", name.get_ref()))
     }));

@@ -84,7 +84,8 @@ impl CameraTable {
             ("panoramic", self.panoramic.as_ref().map(|_| Projection::Panoramic)),
         ])
         .map_err(|message| complain(&message))?;
-        Ok(Camera { name: name.get_ref().clone(), from, to, up, projection })
+        let location = Some(source.location(&name.span()));
+        Ok(Camera { name: name.get_ref().clone(), location, from, to, up, projection })
     }
 }
 

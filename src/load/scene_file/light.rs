@@ -5,7 +5,7 @@ use super::value::{
     Color, ConeAngle, Degrees, Direction, Elevation, Factor, Fraction, NonNegative, OuterAngle,
     Point, Turbidity,
 };
-use crate::error::Result;
+use crate::error::{Location, Result};
 use crate::load::Surroundings;
 use crate::math::Rgb;
 use crate::scene::{Environment, Light};
@@ -17,9 +17,9 @@ use toml::Spanned;
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct LightTables {
-    point: Vec<PointLight>,
-    spot: Vec<Spot>,
-    directional: Vec<Directional>,
+    point: Vec<Spanned<PointLight>>,
+    spot: Vec<Spanned<Spot>>,
+    directional: Vec<Spanned<Directional>>,
 }
 
 /// `[[light.point]]`.
@@ -117,14 +117,16 @@ const fn unscaled() -> Factor {
 }
 
 impl LightTables {
-    /// The lights for `scene`: points, then spots, then directional ones, each in the order of the file.
+    /// The lights for `scene` and where each is defined: points, then spots, then directional ones, each in the
+    /// order of the file.
     ///
     /// # Errors
     /// For a spot whose inner cone is wider than its outer one.
-    pub(super) fn lights(&self, source: Source) -> Result<Vec<Light>> {
-        let points = self.point.iter().map(|light| Ok(light.light()));
-        let spots = self.spot.iter().map(|light| light.light(source));
-        let directional = self.directional.iter().map(|light| Ok(light.light()));
+    pub(super) fn lights(&self, source: Source) -> Result<Vec<(Light, Location)>> {
+        let at = |span| source.location(&span);
+        let points = self.point.iter().map(|l| Ok((l.get_ref().light(), at(l.span()))));
+        let spots = self.spot.iter().map(|l| Ok((l.get_ref().light(source)?, at(l.span()))));
+        let directional = self.directional.iter().map(|l| Ok((l.get_ref().light(), at(l.span()))));
         points.chain(spots).chain(directional).collect()
     }
 }
@@ -187,12 +189,18 @@ impl EnvironmentTable {
             ("image", self.image.as_ref().map(Kind::Image)),
             ("sky", self.sky.as_ref().map(Kind::Sky)),
         ]);
-        match kind.map_err(|message| source.error(span, format!("`environment` {message}")))? {
-            _ if replaced => Ok(None),
-            Kind::Constant(table) => Ok(Some(Surroundings::computed(table.environment()))),
-            Kind::Image(table) => table.surroundings(source).map(Some),
-            Kind::Sky(table) => Ok(Some(Surroundings::computed(table.environment()))),
+        let location = source.location(&span);
+        let kind =
+            kind.map_err(|message| source.error(span, format!("`environment` {message}")))?;
+        if replaced {
+            return Ok(None);
         }
+        let surroundings = match kind {
+            Kind::Constant(table) => Surroundings::computed(table.environment()),
+            Kind::Image(table) => table.surroundings(source)?,
+            Kind::Sky(table) => Surroundings::computed(table.environment()),
+        };
+        Ok(Some(surroundings.defined_at(location)))
     }
 }
 

@@ -48,7 +48,10 @@ pub(super) fn settings(
         _ => Ok(()),
     };
     check(&film.tonemap, "tone map", &ToneMap::ALL.map(|tonemap| tonemap.0))?;
-    check(&render.effects, "effects", &Effects::ALL.map(|effects| effects.0))?;
+    if let Some(effects) = &render.effects {
+        let parsed = effects.get_ref().parse::<Effects>();
+        parsed.map_err(|message| source.error(effects.span(), message))?;
+    }
     check(&render.sampler, "sampler", &SamplerKind::ALL.map(|sampler| sampler.0))?;
     if let Some(filter) = &film.filter {
         Filter::parse(filter.get_ref()).map_err(|e| source.error(filter.span(), e.to_string()))?;

@@ -300,8 +300,8 @@ fn differing(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::Film;
-    use crate::ledger::Ledger;
+    use crate::film::{ClassFilm, Film};
+    use crate::ledger::{Class, Ledger, Watch};
     use crate::math::Rgb;
     use crate::render::NonFinite;
     use std::cell::{Cell, RefCell};
@@ -315,8 +315,10 @@ mod tests {
             film.add(pixel, 0, Rgb::splat(f32::from(white == Some(pixel))), 1.0);
         }
         let mut ledger = Ledger::default();
-        ledger.camera_rays = 6;
-        Rendered { film, ledger, seconds, non_finite: NonFinite::default(), interrupted: false }
+        (0..6).for_each(|_| ledger.count_path_ray(Class::Seen));
+        let classes = ClassFilm::new(Watch::NONE, 2);
+        let non_finite = NonFinite::default();
+        Rendered { film, classes, ledger, seconds, non_finite, interrupted: false }
     }
 
     fn renderer<'a>(backend: &'static str, render: impl Fn() -> Rendered + 'a) -> Renderer<'a> {

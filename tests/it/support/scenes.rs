@@ -7,12 +7,14 @@ use glint::accel::{Accelerator, AcceptAll, HitFilter};
 use glint::camera::{Camera, View};
 use glint::film::{Pixels, Region};
 use glint::filter::{Filter, FilterKind, FilterSampler};
+use glint::ledger::Watch;
 use glint::math::{DAffine3, DMat3, DVec3, Rgb};
+use glint::plan::{Plan, Wishes};
 use glint::render::{RenderJob, Rendered, render};
 use glint::sampling::{Sampler, SamplerKind};
 use glint::scene::{
-    ColorInput, Emission, Environment, Light, Material, MaterialId, MeshData, Model, ModelId,
-    Placement, ScalarInput, Scene, Surface,
+    self, ColorInput, Effects, Emission, Environment, Light, Material, MaterialId, MeshData, Model,
+    ModelId, Placement, Projection, ScalarInput, Scene, Surface,
 };
 use glint::trace::{Block, PixelSample, Tracer, Wavefront, naive};
 use glint::world::{CutOuts, World};
@@ -136,6 +138,7 @@ pub(crate) struct Shot {
     pub(crate) batch: usize,
     pub(crate) threads: usize,
     pub(crate) region: Option<Region>,
+    pub(crate) effects: Effects,
 }
 
 impl Shot {
@@ -152,7 +155,29 @@ impl Shot {
             batch: Wavefront::DEFAULT_BATCH,
             threads: 2,
             region: None,
+            effects: Effects::AUTO,
         }
+    }
+
+    pub(crate) fn with_effects(&self, effects: &str) -> Self {
+        Self { effects: effects.parse().expect("effects"), ..self.clone() }
+    }
+
+    /// The world that this shot is of, and the plan for it.
+    pub(crate) fn plan(&self, whole: &World) -> (World, Plan) {
+        let world = whole.with_effects(&self.effects).expect("a world with less in it");
+        let camera = scene::Camera {
+            name: "test".into(),
+            location: None,
+            from: self.view.from,
+            to: self.view.to,
+            up: self.view.up,
+            projection: Projection::Perspective { vertical_fov: self.fov },
+        };
+        let wishes =
+            Wishes { effects: self.effects, max_depth: self.max_depth, hide_background: false };
+        let plan = Plan::new(&world, &whole.census(), &camera, &wishes);
+        (world, plan)
     }
 
     pub(crate) fn camera(&self, world: &World) -> Camera {
@@ -170,8 +195,13 @@ impl Shot {
         world: &World,
         f: impl FnOnce(&Tracer<'_, EmbreeAccelerator>) -> T,
     ) -> T {
-        let embree = EmbreeAccelerator::build(world.geometry.clone(), 2).expect("embree builds");
+        let embree = self.embree(world);
         self.with_tracer_on(world, &embree, f)
+    }
+
+    /// Embree over the geometry that these effects need.
+    pub(crate) fn embree(&self, whole: &World) -> EmbreeAccelerator {
+        EmbreeAccelerator::build(self.plan(whole).0.geometry, 2).expect("embree builds")
     }
 
     /// The same on any backend.
@@ -181,7 +211,8 @@ impl Shot {
         accelerator: &A,
         f: impl FnOnce(&Tracer<'_, A>) -> T,
     ) -> T {
-        let camera = self.camera(world);
+        let (world, plan) = self.plan(world);
+        let (world, camera) = (&world, self.camera(&world));
         let filter = FilterSampler::new(Filter { kind: FilterKind::Box, radius: 0.5 });
         f(&Tracer {
             world,
@@ -189,13 +220,12 @@ impl Shot {
             camera: &camera,
             filter: &filter,
             sampler: Sampler::new(self.kind, self.seed),
-            max_depth: self.max_depth,
-            hide_background: false,
+            plan: &plan,
         })
     }
 
     pub(crate) fn render(&self, world: &World) -> Rendered {
-        let embree = EmbreeAccelerator::build(world.geometry.clone(), 2).expect("embree builds");
+        let embree = self.embree(world);
         self.render_on(world, &embree)
     }
 
@@ -222,18 +252,26 @@ impl Shot {
 
     /// Every path of the shot by the wavefront, in the order of the block.
     pub(crate) fn wavefront_samples(&self, world: &World) -> Vec<PixelSample> {
-        let block = Block { start: [0, 0], end: self.size, first_sample: 0, end_sample: self.spp };
+        let block = self.block();
         let mut samples = Vec::new();
         self.with_tracer(world, |tracer| {
             let mut wavefront = Wavefront::new(self.batch);
-            if world.has_cut_outs() {
-                wavefront.run(tracer, &CutOuts::new(world), &block, |s| samples.push(*s));
+            if tracer.plan.pipeline.hit_filter {
+                let filter = CutOuts::new(tracer.world);
+                wavefront.run(tracer, &filter, &block, |s, _| samples.push(*s));
             } else {
-                wavefront.run(tracer, &AcceptAll, &block, |s| samples.push(*s));
+                wavefront.run(tracer, &AcceptAll, &block, |s, _| samples.push(*s));
             }
         });
         samples.sort_by_key(|s| (s.pixel[1], s.pixel[0], s.sample));
         samples
+    }
+
+    /// All paths of the shot.
+    pub(crate) fn block(&self) -> Block {
+        let watch = Watch::NONE;
+        let (start, end) = ([0, 0], self.size);
+        Block { start, end, first_sample: 0, end_sample: self.spp, watch }
     }
 
     /// The same paths by the naive integrator.
@@ -248,8 +286,8 @@ impl Shot {
                 .flat_map(|p| (0..shot.spp).map(move |s| naive::radiance(tracer, f, p, s)))
                 .collect()
         }
-        self.with_tracer(world, |tracer| match world.has_cut_outs() {
-            true => all(self, tracer, &CutOuts::new(world)),
+        self.with_tracer(world, |tracer| match tracer.plan.pipeline.hit_filter {
+            true => all(self, tracer, &CutOuts::new(tracer.world)),
             false => all(self, tracer, &AcceptAll),
         })
     }

@@ -24,7 +24,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("load", "error math sampling image os geometry bsdf filter scene"),
     ("accel", "error math ledger os geometry"),
     ("world", "error math sampling image geometry texture bsdf light camera filter scene accel"),
-    ("plan", "error math sampling ledger scene world"),
+    ("plan", "error math sampling ledger light scene world"),
     (
         "trace",
         "error math sampling ledger os geometry texture bsdf light camera filter scene accel world plan",

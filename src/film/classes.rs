@@ -1,0 +1,221 @@
+//! Light told apart by transport class, in the watched pixels: who brings the energy, and who the noise.
+//!
+//! The energy share of a class is its part of the mean luminance. Its variance share is Cov(class, image) / Var(image)
+//! over the replicates, each pixel and channel weighted as the relative error weighs it, 1 / (R^2 + (0.1 m)^2) with R the
+//! pixel's mean and m the mean of all: the shares add up to 1, since the classes add up to the image, and one that
+//! cancels the noise of another is negative. Sums are exact, as the film's are.
+
+use super::fixed::Fixed;
+use crate::ledger::{Class, Watch};
+use crate::math::Rgb;
+use crate::sampling::REPLICATES;
+
+/// Sums of one watched pixel.
+#[derive(Clone, Debug, PartialEq)]
+struct CellSums {
+    radiance: [[[Fixed; 3]; Class::COUNT]; REPLICATES],
+    samples: [u64; REPLICATES],
+}
+
+/// One sample of a watched pixel.
+#[derive(Clone, Debug)]
+pub struct ClassSample {
+    /// The pixel's cell.
+    pub cell: u32,
+    /// The sample's number.
+    pub sample: u64,
+    /// Its finite radiance by class, times the filter's weight.
+    pub parts: [Rgb; Class::COUNT],
+}
+
+/// Sums of all watched pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClassFilm {
+    watch: Watch,
+    cells: Vec<CellSums>,
+}
+
+/// What a class brings to an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClassShare {
+    /// The class.
+    pub class: Class,
+    /// Its part of the light.
+    pub energy: f64,
+    /// Its part of the noise.
+    pub variance: f64,
+}
+
+impl ClassFilm {
+    /// At most as many pixels are watched: some 16 MB of sums, and shares to about a hundredth of themselves.
+    pub const PIXELS: u64 = 8192;
+
+    /// Empty sums over an image `height` pixels high.
+    pub fn new(watch: Watch, height: u32) -> Self {
+        let empty = CellSums {
+            radiance: [[[Fixed::default(); 3]; Class::COUNT]; REPLICATES],
+            samples: [0; REPLICATES],
+        };
+        Self { watch, cells: vec![empty; watch.cells(height)] }
+    }
+
+    /// Number of watched pixels.
+    pub fn pixels(&self) -> usize {
+        self.cells.iter().filter(|cell| cell.samples[0] > 0).count()
+    }
+
+    /// Bytes of all sums.
+    pub fn bytes(&self) -> usize {
+        self.cells.len() * size_of::<CellSums>()
+    }
+
+    /// Adds samples; neither their order nor how they are divided matters.
+    pub fn add(&mut self, samples: &[ClassSample]) {
+        for ClassSample { cell, sample, parts } in samples {
+            let replicate = (sample % REPLICATES as u64) as usize;
+            let cell = &mut self.cells[*cell as usize];
+            cell.samples[replicate] += 1;
+            for (sums, part) in cell.radiance[replicate].iter_mut().zip(parts) {
+                if !part.is_black() {
+                    for (sum, value) in sums.iter_mut().zip(part.to_array()) {
+                        sum.add(Fixed::from_f32(value));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The shares of all classes that brought any light, in their order.
+    pub fn shares(&self) -> Vec<ClassShare> {
+        let cells: Vec<CellMeans> =
+            self.cells.iter().filter(|cell| cell.samples[0] > 0).map(CellMeans::new).collect();
+        let mut energy = [0.0; Class::COUNT];
+        for cell in &cells {
+            for (sum, mean) in energy.iter_mut().zip(cell.mean()) {
+                *sum += luminance(mean);
+            }
+        }
+        let mut image_mean = 0.0;
+        for cell in &cells {
+            image_mean += cell.image().iter().sum::<f64>() / (3 * cells.len()) as f64;
+        }
+        let mut covariance = [0.0; Class::COUNT];
+        for cell in &cells {
+            cell.add_covariances(image_mean, &mut covariance);
+        }
+        let share = |part: f64, all: f64| if all == 0.0 { 0.0 } else { part / all };
+        let (light, noise): (f64, f64) = (energy.iter().sum(), covariance.iter().sum());
+        let is_lit = |class: &&Class| self.cells.iter().any(|cell| cell.is_lit(**class));
+        let of = |&class: &Class| ClassShare {
+            class,
+            energy: share(energy[class as usize], light),
+            variance: share(covariance[class as usize], noise),
+        };
+        Class::ALL.iter().filter(is_lit).map(of).collect()
+    }
+}
+
+impl CellSums {
+    fn is_lit(&self, class: Class) -> bool {
+        self.radiance.iter().any(|sums| sums[class as usize] != [Fixed::default(); 3])
+    }
+}
+
+/// Means of one pixel, for each replicate that has samples: by class and channel.
+struct CellMeans(Vec<[[f64; 3]; Class::COUNT]>);
+
+impl CellMeans {
+    fn new(cell: &CellSums) -> Self {
+        let of = |(sums, &n): (&[[Fixed; 3]; Class::COUNT], &u64)| {
+            (n > 0).then(|| sums.map(|channels| channels.map(|sum| sum.to_f64() / n as f64)))
+        };
+        Self(cell.radiance.iter().zip(&cell.samples).filter_map(of).collect())
+    }
+
+    /// Over the replicates, by class.
+    fn mean(&self) -> [[f64; 3]; Class::COUNT] {
+        let n = self.0.len().max(1) as f64;
+        let mut mean = [[0.0; 3]; Class::COUNT];
+        for replicate in &self.0 {
+            for (mean, value) in mean.as_flattened_mut().iter_mut().zip(replicate.as_flattened()) {
+                *mean += value / n;
+            }
+        }
+        mean
+    }
+
+    /// Over the replicates, of all classes together.
+    fn image(&self) -> [f64; 3] {
+        total(&self.mean())
+    }
+
+    /// Adds the weighted covariance of each class with the image.
+    fn add_covariances(&self, image_mean: f64, covariance: &mut [f64; Class::COUNT]) {
+        let (mean, image) = (self.mean(), self.image());
+        for replicate in &self.0 {
+            let of_image = total(replicate);
+            for c in 0..3 {
+                let floor = 0.1 * image_mean;
+                let denominator = image[c] * image[c] + floor * floor;
+                if denominator > 0.0 {
+                    let weight = (of_image[c] - image[c]) / denominator;
+                    for (k, covariance) in covariance.iter_mut().enumerate() {
+                        *covariance += (replicate[k][c] - mean[k][c]) * weight;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// All classes together.
+fn total(classes: &[[f64; 3]; Class::COUNT]) -> [f64; 3] {
+    [0, 1, 2].map(|c| classes.iter().map(|class| class[c]).sum())
+}
+
+/// Rec. 709.
+fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(cell: u32, sample: u64, direct: f32, mirror: f32) -> ClassSample {
+        let mut parts = [Rgb::BLACK; Class::COUNT];
+        parts[Class::DirectSun as usize] = Rgb::splat(direct);
+        parts[Class::Mirror as usize] = Rgb::splat(mirror);
+        ClassSample { cell, sample, parts }
+    }
+
+    fn shares(samples: &[ClassSample]) -> Vec<ClassShare> {
+        let mut film = ClassFilm::new(Watch::new([0; 2], [2, 1], 2), 1);
+        film.add(samples);
+        film.shares()
+    }
+
+    #[test]
+    fn energy_and_noise_go_to_whom_they_belong() {
+        // The sun is steady, the mirror is not.
+        let steady: Vec<ClassSample> =
+            (0..8).map(|s| sample((s / 4) as u32, s % 4, 3.0, (s % 2) as f32 * 2.0)).collect();
+        let shares = shares(&steady);
+        assert_eq!(shares.len(), 2);
+        assert_eq!(shares[0].class, Class::DirectSun);
+        assert!((shares[0].energy - 0.75).abs() < 1e-12 && shares[0].variance.abs() < 1e-12);
+        assert!((shares[1].energy - 0.25).abs() < 1e-12);
+        assert!((shares[1].variance - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_cancels_noise_has_a_negative_share() {
+        // Twice up and once down: the image goes up by one where the sun goes up by two.
+        let values = [(0.0, 2.0), (2.0, 1.0), (0.0, 2.0), (2.0, 1.0)];
+        let samples: Vec<ClassSample> =
+            (0..4).map(|s| sample(0, s, values[s as usize].0, values[s as usize].1)).collect();
+        let shares = shares(&samples);
+        assert!((shares[0].variance - 2.0).abs() < 1e-12, "{shares:?}");
+        assert!((shares[1].variance + 1.0).abs() < 1e-12, "{shares:?}");
+    }
+}

@@ -1,0 +1,299 @@
+//! The table of effects: on or off, why, and the stages that run for each.
+
+use super::{Pipeline, Wishes};
+use crate::error::Location;
+use crate::ledger::Stage;
+use crate::scene::{self, Effect, Style};
+use crate::world::{Census, Feature, LightSampler, Witness};
+
+/// One effect or strategy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its name; those of [`Effect`] can be taken out by it.
+    pub effect: &'static str,
+    /// Whether it is simulated.
+    pub on: bool,
+    /// Why.
+    pub reason: String,
+    /// What calls for it, where it is defined in a file.
+    pub source: Option<Location>,
+    /// What runs for it, beyond what runs for every picture.
+    pub stages: &'static [Stage],
+}
+
+/// Why something is on or off, and who called for it.
+type Reason = (bool, String, Option<Location>);
+
+/// All rows.
+pub(super) fn rows(
+    pipeline: &Pipeline,
+    lights: &LightSampler,
+    census: &Census,
+    camera: &scene::Camera,
+    wishes: &Wishes,
+) -> Vec<Row> {
+    let judge = Judge { pipeline, lights, census, camera, wishes };
+    let light_stages = &[Stage::SampleLights, Stage::Shadow];
+    let rows: [(&'static str, Reason, &'static [Stage]); 23] = [
+        ("emission", judge.emission(), &[Stage::Emit]),
+        ("environment", judge.environment(), &[Stage::Environment]),
+        ("direct light of points", judge.direct(Feature::PointLight), light_stages),
+        ("direct light of directions", judge.direct(Feature::Direction), light_stages),
+        ("direct light of suns", judge.direct(Feature::Sun), light_stages),
+        ("direct light of surfaces", judge.direct(Feature::Emission), light_stages),
+        ("direct light of surroundings", judge.direct_surroundings(), light_stages),
+        ("shadows", judge.shadows(), &[Stage::Shadow]),
+        ("diffuse", judge.event(Effect::Diffuse, &[Feature::Diffuse]), &[Stage::Scatter]),
+        ("glossy", judge.event(Effect::Glossy, &[Feature::Glossy]), &[Stage::Scatter]),
+        ("mirror", judge.event(Effect::Mirror, &[Feature::Mirror]), &[Stage::Scatter]),
+        ("refraction", judge.refraction(), &[Stage::Scatter]),
+        ("absorption", judge.event(Effect::Absorption, &[Feature::Absorption]), &[Stage::Scatter]),
+        ("caustics", judge.caustics(), &[Stage::Scatter]),
+        ("textures", judge.event(Effect::Textures, &[Feature::Texture]), &[Stage::Textures]),
+        ("normal-maps", judge.event(Effect::NormalMaps, &[Feature::NormalMap]), &[Stage::Details]),
+        ("cut-outs", judge.event(Effect::CutOuts, &[Feature::CutOut]), &[Stage::Intersect]),
+        ("depth-of-field", judge.depth_of_field(), &[Stage::Lens]),
+        ("instancing", judge.instancing(), &[Stage::Intersect]),
+        ("light-sampling", judge.light_sampling(), light_stages),
+        ("choice of lights by power", judge.light_choice(), &[Stage::SampleLights]),
+        ("scatter-sampling", judge.scatter_sampling(), &[Stage::Emit, Stage::Environment]),
+        ("multiple importance sampling", judge.combination(), &[]),
+    ];
+    rows.into_iter()
+        .map(|(effect, (on, reason, source), stages)| Row { effect, on, reason, source, stages })
+        .collect()
+}
+
+/// What reasons are made of.
+struct Judge<'a> {
+    pipeline: &'a Pipeline,
+    lights: &'a LightSampler,
+    census: &'a Census,
+    camera: &'a scene::Camera,
+    wishes: &'a Wishes,
+}
+
+fn off(reason: impl Into<String>) -> Reason {
+    (false, reason.into(), None)
+}
+
+fn on(reason: impl Into<String>) -> Reason {
+    (true, reason.into(), None)
+}
+
+/// Who calls for something, and how many do.
+fn called_for(witness: &Witness) -> Reason {
+    let others = match witness.count - 1 {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    (true, format!("{}{others}", witness.first), witness.location.clone())
+}
+
+/// What it means that nothing in a scene has a feature.
+const fn nothing(feature: Feature) -> &'static str {
+    match feature {
+        Feature::PointLight => "no point or spot light",
+        Feature::Direction => "no directional light without extent",
+        Feature::Sun => "no sun",
+        Feature::Emission => "no surface emits",
+        Feature::Constant => "no constant environment",
+        Feature::Image => "no sky and no image around the scene",
+        Feature::Diffuse => "no diffuse surface",
+        Feature::Glossy => "no glossy surface",
+        Feature::Mirror => "no mirror and no smooth interface",
+        Feature::Refraction | Feature::RoughRefraction => "nothing is transparent",
+        Feature::Absorption => "no medium absorbs",
+        Feature::Texture => "no surface has a texture",
+        Feature::NormalMap => "no normal or bump map",
+        Feature::CutOut => "every surface is whole",
+        Feature::Instancing => "no model is placed twice",
+    }
+}
+
+impl Judge<'_> {
+    /// The reason that stands before all others: what the user took out, or that everything runs.
+    fn said(&self, effect: Effect) -> Option<Reason> {
+        let effects = &self.wishes.effects;
+        if !effects.allowed.has(effect) {
+            return Some(off(format!("left out: --effects {effects}")));
+        }
+        (effects.style == Style::All).then(|| on("--effects all"))
+    }
+
+    /// The first of `features` that the scene has; `Err` with the reason why there is none.
+    fn found(&self, features: &[Feature]) -> Result<Reason, Reason> {
+        let witness = features.iter().find_map(|&feature| self.census.witness(feature));
+        witness.map(called_for).ok_or_else(|| off(nothing(features[0])))
+    }
+
+    fn with(&self, effect: Effect, reason: impl FnOnce() -> Reason) -> Reason {
+        self.said(effect).unwrap_or_else(reason)
+    }
+
+    /// An effect that is on where something calls for it.
+    fn event(&self, effect: Effect, features: &[Feature]) -> Reason {
+        self.with(effect, || self.found(features).unwrap_or_else(|none| none))
+    }
+
+    fn emission(&self) -> Reason {
+        self.event(Effect::Emission, &[Feature::Emission])
+    }
+
+    fn environment(&self) -> Reason {
+        self.with(Effect::Environment, || {
+            match self.found(&[Feature::Image, Feature::Constant, Feature::Sun]) {
+                Ok(_) if self.wishes.hide_background => off("hidden: --background"),
+                Ok(found) => found,
+                Err(_) => off("nothing surrounds the scene"),
+            }
+        })
+    }
+
+    /// Direct light of one kind of lights.
+    fn direct(&self, feature: Feature) -> Reason {
+        self.with(Effect::Direct, || {
+            let found = match self.found(&[feature]) {
+                Ok(found) => found,
+                Err(none) => return none,
+            };
+            if self.pipeline.max_depth < 2 {
+                return off("nothing scatters it, or --max-depth 1");
+            }
+            let shadows = match feature {
+                Feature::PointLight | Feature::Direction => "hard",
+                _ => "soft",
+            };
+            (true, format!("{}: {shadows} shadows", found.1), found.2)
+        })
+    }
+
+    fn direct_surroundings(&self) -> Reason {
+        let by = match self.census.has(Feature::Image) {
+            true => Feature::Image,
+            false => Feature::Constant,
+        };
+        self.direct(by)
+    }
+
+    fn shadows(&self) -> Reason {
+        self.with(Effect::Shadows, || match self.pipeline.light_sampling {
+            true => on("lights are sampled: rays to them may be blocked"),
+            false => off("no light is sampled: no ray is sent to one"),
+        })
+    }
+
+    fn refraction(&self) -> Reason {
+        let features = [Feature::Refraction, Feature::RoughRefraction];
+        let reason = self.event(Effect::Refraction, &features);
+        match reason {
+            (true, why, source) if self.wishes.effects.style != Style::All => {
+                (true, format!("{why}: with total internal reflection"), source)
+            }
+            other => other,
+        }
+    }
+
+    fn caustics(&self) -> Reason {
+        self.with(Effect::Caustics, || {
+            let sharp = [Feature::Refraction, Feature::RoughRefraction, Feature::Mirror];
+            let found = match self.found(&sharp) {
+                Ok(found) => found,
+                Err(_) => return off("nothing reflects or refracts sharply"),
+            };
+            if !self.census.has_any(&[Feature::Diffuse, Feature::Glossy]) {
+                return off("no rough surface to throw light on");
+            }
+            if !self.pipeline.emission && !self.pipeline.environment {
+                return off("lights are points: no ray meets one by way of a mirror");
+            }
+            if self.pipeline.max_depth < 3 {
+                return off("--max-depth ends paths before");
+            }
+            found
+        })
+    }
+
+    fn depth_of_field(&self) -> Reason {
+        self.with(Effect::DepthOfField, || match self.camera.projection.has_lens() {
+            true => {
+                let camera = format!("camera \"{}\" has a lens", self.camera.name);
+                (true, camera, self.camera.location.clone())
+            }
+            false => (false, "the camera has no lens".into(), self.camera.location.clone()),
+        })
+    }
+
+    fn instancing(&self) -> Reason {
+        match self.census.witness(Feature::Instancing) {
+            Some(witness) => on(format!("{} placements of models", witness.count)),
+            None => off(nothing(Feature::Instancing)),
+        }
+    }
+
+    fn light_sampling(&self) -> Reason {
+        self.with(Effect::LightSampling, || {
+            if self.pipeline.light_sampling {
+                let ways: Vec<&str> = [
+                    (Feature::PointLight, "points"),
+                    (Feature::Direction, "directions"),
+                    (Feature::Sun, "suns by solid angle"),
+                    (Feature::Emission, "surfaces by area"),
+                    (Feature::Image, "surroundings by radiance"),
+                ]
+                .into_iter()
+                .filter(|(feature, _)| self.census.has(*feature))
+                .map(|(_, way)| way)
+                .collect();
+                return on(ways.join(", "));
+            }
+            if self.pipeline.max_depth < 2 {
+                return off("nothing scatters light, or --max-depth 1");
+            }
+            if self.lights.is_empty() && self.census.has(Feature::Constant) {
+                return off("a constant environment is found better by scattering alone");
+            }
+            if self.lights.is_empty() {
+                return off("there is no light");
+            }
+            off("every surface is a mirror or clear: only reflections find lights")
+        })
+    }
+
+    fn light_choice(&self) -> Reason {
+        match (self.pipeline.light_choice, self.pipeline.everything) {
+            (true, true) => on("--effects all"),
+            (true, false) => on("there is more than one light"),
+            (false, _) if !self.pipeline.light_sampling => off("no light is sampled"),
+            (false, _) => off("one light is sampled"),
+        }
+    }
+
+    fn scatter_sampling(&self) -> Reason {
+        self.with(Effect::ScatterSampling, || {
+            if !self.pipeline.scatter_sampling {
+                return off("without shadows, only light sampling finds lights");
+            }
+            match self.pipeline.emission || self.pipeline.environment {
+                true => on("rays can meet lights"),
+                false => off("lights are points or directions: no ray meets one"),
+            }
+        })
+    }
+
+    fn combination(&self) -> Reason {
+        if self.pipeline.combination {
+            return on(match self.pipeline.everything {
+                true => "--effects all",
+                false => "some lights are found in both ways",
+            });
+        }
+        off(if !self.pipeline.light_sampling {
+            "scattering alone finds all light"
+        } else if !self.pipeline.scatter_sampling {
+            "light sampling alone finds lights"
+        } else {
+            "no sampled light can be met by a ray: light sampling is exact"
+        })
+    }
+}
