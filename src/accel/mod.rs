@@ -19,6 +19,7 @@ pub use options::{BuildOptions, Quality};
 pub use resolve::{resolve, resolve_all};
 
 use crate::geometry::{Hit, Ray};
+use crate::ledger::FeatureTotals;
 
 /// Answers batches of rays.
 pub trait Accelerator: Sync {
@@ -41,6 +42,11 @@ pub trait HitFilter: Sync {
 
     /// Whether the surface is there for this ray.
     fn accept(&self, ray: &Ray, candidate: &Hit) -> bool;
+
+    /// What it has cost so far, where that is counted.
+    fn cost(&self) -> FeatureTotals {
+        FeatureTotals::default()
+    }
 }
 
 /// The filter of scenes without cut-outs: compiles away.

@@ -168,7 +168,7 @@ pub(super) fn metadata(
             100.0 * s.variance
         )
     };
-    let shares: Vec<String> = rendered.classes.shares().iter().map(share).collect();
+    let shares: Vec<String> = rendered.classes.shares(&rendered.film).1.iter().map(share).collect();
     let named = |rows: Vec<&str>| if rows.is_empty() { "nothing".into() } else { rows.join(", ") };
     let simulated = job.plan.rows.iter().filter(|row| row.on).map(|row| row.effect).collect();
     let lacks = settings.effects.left_out().map(Effect::name).collect();

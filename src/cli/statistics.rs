@@ -4,7 +4,7 @@
 
 use super::render::Job;
 use crate::accel::BuildStats;
-use crate::film::Film;
+use crate::film::{ClassShare, Film};
 use crate::ledger::{Class, Ledger, Stage};
 use crate::os::peak_rss_bytes;
 use crate::plan::Row;
@@ -156,6 +156,7 @@ impl Statistics {
     ) -> Self {
         seconds.total = seconds.load + seconds.build + seconds.render + seconds.write;
         let ledger = &rendered.ledger;
+        let (watched_pixels, shares) = rendered.classes.shares(&rendered.film);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             command: command(),
@@ -196,8 +197,8 @@ impl Statistics {
             ledger: Bill {
                 worker_seconds: ledger.worker_seconds,
                 stages: stage_rows(ledger),
-                classes: class_rows(rendered),
-                watched_pixels: rendered.classes.pixels(),
+                classes: class_rows(rendered, &shares),
+                watched_pixels,
             },
             non_finite: rendered.non_finite.count,
             fingerprint: job.fingerprint.clone(),
@@ -239,8 +240,7 @@ impl PlanRow {
     }
 }
 
-fn class_rows(rendered: &Rendered) -> Vec<ClassRow> {
-    let shares = rendered.classes.shares();
+fn class_rows(rendered: &Rendered, shares: &[ClassShare]) -> Vec<ClassRow> {
     let row = |&class: &Class| {
         let rays = rendered.ledger.class_rays(class);
         let share = shares.iter().find(|share| share.class == class);

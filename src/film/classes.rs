@@ -6,26 +6,25 @@
 //! cancels the noise of another is negative. Sums are exact, as the film's are.
 
 use super::fixed::Fixed;
+use super::{Film, PixelSums};
 use crate::ledger::{Class, Watch};
 use crate::math::Rgb;
 use crate::sampling::REPLICATES;
 
-/// Sums of one watched pixel.
-#[derive(Clone, Debug, PartialEq)]
-struct CellSums {
-    radiance: [[[Fixed; 3]; Class::COUNT]; REPLICATES],
-    samples: [u64; REPLICATES],
-}
+/// Sums of one watched pixel, by replicate, class and channel.
+type CellSums = [[[Fixed; 3]; Class::COUNT]; REPLICATES];
 
-/// One sample of a watched pixel.
-#[derive(Clone, Debug)]
+/// Light of one class in one sample of a watched pixel.
+#[derive(Clone, Copy, Debug)]
 pub struct ClassSample {
     /// The pixel's cell.
     pub cell: u32,
     /// The sample's number.
     pub sample: u64,
-    /// Its finite radiance by class, times the filter's weight.
-    pub parts: [Rgb; Class::COUNT],
+    /// The class.
+    pub class: Class,
+    /// Finite radiance times the filter's weight.
+    pub radiance: Rgb,
 }
 
 /// Sums of all watched pixels.
@@ -47,21 +46,13 @@ pub struct ClassShare {
 }
 
 impl ClassFilm {
-    /// At most as many pixels are watched: some 16 MB of sums, and shares to about a hundredth of themselves.
-    pub const PIXELS: u64 = 8192;
+    /// At most as many pixels are watched: 8 MB of sums, and shares to some hundredths of themselves.
+    pub const PIXELS: u64 = 4096;
 
     /// Empty sums over an image `height` pixels high.
     pub fn new(watch: Watch, height: u32) -> Self {
-        let empty = CellSums {
-            radiance: [[[Fixed::default(); 3]; Class::COUNT]; REPLICATES],
-            samples: [0; REPLICATES],
-        };
+        let empty = [[[Fixed::default(); 3]; Class::COUNT]; REPLICATES];
         Self { watch, cells: vec![empty; watch.cells(height)] }
-    }
-
-    /// Number of watched pixels.
-    pub fn pixels(&self) -> usize {
-        self.cells.iter().filter(|cell| cell.samples[0] > 0).count()
     }
 
     /// Bytes of all sums.
@@ -71,24 +62,23 @@ impl ClassFilm {
 
     /// Adds samples; neither their order nor how they are divided matters.
     pub fn add(&mut self, samples: &[ClassSample]) {
-        for ClassSample { cell, sample, parts } in samples {
-            let replicate = (sample % REPLICATES as u64) as usize;
-            let cell = &mut self.cells[*cell as usize];
-            cell.samples[replicate] += 1;
-            for (sums, part) in cell.radiance[replicate].iter_mut().zip(parts) {
-                if !part.is_black() {
-                    for (sum, value) in sums.iter_mut().zip(part.to_array()) {
-                        sum.add(Fixed::from_f32(value));
-                    }
-                }
+        for light in samples {
+            let replicate = (light.sample % REPLICATES as u64) as usize;
+            let sums = &mut self.cells[light.cell as usize][replicate][light.class as usize];
+            for (sum, value) in sums.iter_mut().zip(light.radiance.to_array()) {
+                sum.add(Fixed::from_f32(value));
             }
         }
     }
 
-    /// The shares of all classes that brought any light, in their order.
-    pub fn shares(&self) -> Vec<ClassShare> {
-        let cells: Vec<CellMeans> =
-            self.cells.iter().filter(|cell| cell.samples[0] > 0).map(CellMeans::new).collect();
+    /// The number of watched pixels, and the shares of all classes that brought any light, in their order. `film` has
+    /// all samples of the same render.
+    pub fn shares(&self, film: &Film) -> (usize, Vec<ClassShare>) {
+        let of = |(pixel, sums): ([u32; 2], &PixelSums)| {
+            let cell = self.watch.cell(pixel)?;
+            Some(CellMeans::new(&self.cells[cell as usize], sums))
+        };
+        let cells: Vec<CellMeans> = film.region.iter().zip(&film.sums).filter_map(of).collect();
         let mut energy = [0.0; Class::COUNT];
         for cell in &cells {
             for (sum, mean) in energy.iter_mut().zip(cell.mean()) {
@@ -105,19 +95,15 @@ impl ClassFilm {
         }
         let share = |part: f64, all: f64| if all == 0.0 { 0.0 } else { part / all };
         let (light, noise): (f64, f64) = (energy.iter().sum(), covariance.iter().sum());
-        let is_lit = |class: &&Class| self.cells.iter().any(|cell| cell.is_lit(**class));
+        let none = [Fixed::default(); 3];
+        let is_lit =
+            |&&class: &&Class| self.cells.iter().flatten().any(|sums| sums[class as usize] != none);
         let of = |&class: &Class| ClassShare {
             class,
             energy: share(energy[class as usize], light),
             variance: share(covariance[class as usize], noise),
         };
-        Class::ALL.iter().filter(is_lit).map(of).collect()
-    }
-}
-
-impl CellSums {
-    fn is_lit(&self, class: Class) -> bool {
-        self.radiance.iter().any(|sums| sums[class as usize] != [Fixed::default(); 3])
+        (cells.len(), Class::ALL.iter().filter(is_lit).map(of).collect())
     }
 }
 
@@ -125,11 +111,12 @@ impl CellSums {
 struct CellMeans(Vec<[[f64; 3]; Class::COUNT]>);
 
 impl CellMeans {
-    fn new(cell: &CellSums) -> Self {
-        let of = |(sums, &n): (&[[Fixed; 3]; Class::COUNT], &u64)| {
+    fn new(cell: &CellSums, pixel: &PixelSums) -> Self {
+        let of = |(k, sums): (usize, &[[Fixed; 3]; Class::COUNT])| {
+            let n = pixel.samples_of(k);
             (n > 0).then(|| sums.map(|channels| channels.map(|sum| sum.to_f64() / n as f64)))
         };
-        Self(cell.radiance.iter().zip(&cell.samples).filter_map(of).collect())
+        Self(cell.iter().enumerate().filter_map(of).collect())
     }
 
     /// Over the replicates, by class.
@@ -181,26 +168,30 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::Region;
 
-    fn sample(cell: u32, sample: u64, direct: f32, mirror: f32) -> ClassSample {
-        let mut parts = [Rgb::BLACK; Class::COUNT];
-        parts[Class::DirectSun as usize] = Rgb::splat(direct);
-        parts[Class::Mirror as usize] = Rgb::splat(mirror);
-        ClassSample { cell, sample, parts }
-    }
-
-    fn shares(samples: &[ClassSample]) -> Vec<ClassShare> {
-        let mut film = ClassFilm::new(Watch::new([0; 2], [2, 1], 2), 1);
-        film.add(samples);
-        film.shares()
+    /// (pixel, sample, light of the sun, light of the mirror).
+    fn shares(samples: &[(u32, u64, f32, f32)]) -> Vec<ClassShare> {
+        let (start, end) = ([0, 0], [2, 1]);
+        let mut film = Film::new(Region { start, end });
+        let mut classes = ClassFilm::new(Watch::new(start, end, 2), 1);
+        for &(cell, sample, sun, mirror) in samples {
+            film.add([cell, 0], sample, Rgb::splat(sun + mirror), 1.0);
+            for (class, light) in [(Class::DirectSun, sun), (Class::Mirror, mirror)] {
+                let radiance = Rgb::splat(light);
+                classes.add(&[ClassSample { cell, sample, class, radiance }]);
+            }
+        }
+        let (pixels, shares) = classes.shares(&film);
+        assert_eq!(pixels, 2);
+        shares
     }
 
     #[test]
     fn energy_and_noise_go_to_whom_they_belong() {
         // The sun is steady, the mirror is not.
-        let steady: Vec<ClassSample> =
-            (0..8).map(|s| sample((s / 4) as u32, s % 4, 3.0, (s % 2) as f32 * 2.0)).collect();
-        let shares = shares(&steady);
+        let steady = (0..8).map(|s| ((s / 4) as u32, s % 4, 3.0, (s % 2) as f32 * 2.0));
+        let shares = shares(&steady.collect::<Vec<_>>());
         assert_eq!(shares.len(), 2);
         assert_eq!(shares[0].class, Class::DirectSun);
         assert!((shares[0].energy - 0.75).abs() < 1e-12 && shares[0].variance.abs() < 1e-12);
@@ -212,9 +203,8 @@ mod tests {
     fn what_cancels_noise_has_a_negative_share() {
         // Twice up and once down: the image goes up by one where the sun goes up by two.
         let values = [(0.0, 2.0), (2.0, 1.0), (0.0, 2.0), (2.0, 1.0)];
-        let samples: Vec<ClassSample> =
-            (0..4).map(|s| sample(0, s, values[s as usize].0, values[s as usize].1)).collect();
-        let shares = shares(&samples);
+        let samples = (0..4).map(|s| (0, s, values[s as usize].0, values[s as usize].1));
+        let shares = shares(&samples.collect::<Vec<_>>());
         assert!((shares[0].variance - 2.0).abs() < 1e-12, "{shares:?}");
         assert!((shares[1].variance + 1.0).abs() < 1e-12, "{shares:?}");
     }

@@ -24,6 +24,14 @@ struct PixelSums {
     samples: u64,
 }
 
+impl PixelSums {
+    /// How many of the samples are replicate number `k`'s: sample s belongs to replicate s mod the number of them.
+    fn samples_of(&self, k: usize) -> u64 {
+        let replicates = REPLICATES as u64;
+        (self.samples + replicates - 1 - k as u64) / replicates
+    }
+}
+
 /// Sums of all pixels of a region of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
@@ -107,9 +115,7 @@ impl Film {
 /// Variance of the pixel's mean, a channel, from the spread of the replicates' means; 0 while fewer
 /// than two replicates have samples.
 fn variance_of_mean(sums: &PixelSums) -> Rgb {
-    let r = REPLICATES as u64;
-    // Sample s belongs to replicate s mod r, so the counts differ by at most one.
-    let count = |k: usize| (sums.samples + r - 1 - k as u64) / r;
+    let count = |k: usize| sums.samples_of(k);
     let used = (0..REPLICATES).filter(|&k| count(k) > 0).count();
     if used < 2 {
         return Rgb::BLACK;

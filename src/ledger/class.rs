@@ -58,6 +58,11 @@ impl Events {
     /// The class of a path of more than direct light; `None` where nothing happened.
     #[inline]
     pub const fn class(self) -> Option<Class> {
+        CLASSES[(self.0 & Self::ALL.0) as usize]
+    }
+
+    /// [`Events::class`], by the rule itself.
+    const fn most_demanding(self) -> Option<Class> {
         if self.meet(Self::CAUSTIC) {
             Some(Class::Caustic)
         } else if self.meet(Self::REFRACTION) {
@@ -73,6 +78,16 @@ impl Events {
         }
     }
 }
+
+/// The class for each set of events: it is asked for at every vertex.
+const CLASSES: [Option<Class>; 32] = {
+    let (mut classes, mut events) = ([None; 32], 0);
+    while events < 32 {
+        classes[events] = Events(events as u8).most_demanding();
+        events += 1;
+    }
+    classes
+};
 
 macro_rules! classes {
     ($($(#[doc = $doc:literal])* $class:ident = $name:literal,)*) => {

@@ -24,6 +24,15 @@ pub struct StageTotals {
     pub items: u64,
 }
 
+/// Totals of a feature that runs within stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FeatureTotals {
+    /// How often it ran.
+    pub calls: u64,
+    /// Worker seconds, which its stages have counted too; estimated from some of the calls.
+    pub seconds: f64,
+}
+
 /// Rays of one class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClassRays {
@@ -38,8 +47,8 @@ pub struct ClassRays {
 pub struct Ledger {
     stages: [StageTotals; Stage::COUNT],
     classes: [ClassRays; Class::COUNT],
-    /// How often hit filters were asked.
-    pub filter_calls: u64,
+    /// What hit filters cost within the stages that trace rays.
+    pub cut_outs: FeatureTotals,
     /// Seconds of all workers, in stages or not.
     pub worker_seconds: f64,
 }
@@ -122,7 +131,8 @@ impl Ledger {
             mine.path += theirs.path;
             mine.shadow += theirs.shadow;
         }
-        self.filter_calls += other.filter_calls;
+        self.cut_outs.calls += other.cut_outs.calls;
+        self.cut_outs.seconds += other.cut_outs.seconds;
         self.worker_seconds += other.worker_seconds;
     }
 }

@@ -45,6 +45,8 @@ pub struct Pipeline {
     pub combination: bool,
     /// Media keep light.
     pub absorption: bool,
+    /// Paths may have to end at a surface, for what they were allowed.
+    pub bounded: bool,
     /// Paths end at random.
     pub roulette: bool,
     /// Nothing is spared: every stage runs, if only to find that there is nothing to do.
@@ -121,6 +123,7 @@ impl Pipeline {
             scatter_sampling,
             combination: light_sampling && scatter_sampling && (everything || lights.has_extent()),
             absorption: allowed(Effect::Absorption) && has(&[Feature::Absorption]),
+            bounded: everything || max_depth < u32::MAX || events != Events::ALL,
             roulette: everything || max_depth > FREE_SEGMENTS,
             everything,
         };
@@ -138,18 +141,13 @@ impl Pipeline {
         self.everything || self.max_depth > 1
     }
 
-    /// Whether paths may have to end at a surface for what they were allowed.
-    pub fn is_bounded(&self) -> bool {
-        self.everything || self.max_depth < u32::MAX || self.events != Events::ALL
-    }
-
     /// Whether a stage runs.
     pub fn runs(&self, stage: Stage) -> bool {
         match stage {
             Stage::Lens => self.lens,
             Stage::Environment => self.environment,
             Stage::Details | Stage::Textures => self.details != Details::Nowhere,
-            Stage::Emit => self.emission || self.is_bounded(),
+            Stage::Emit => self.emission || self.bounded,
             Stage::Materials | Stage::Scatter => self.scatters(),
             Stage::SampleLights => self.light_sampling,
             Stage::Shadow => self.light_sampling && self.shadows,

@@ -2,7 +2,7 @@
 
 use super::{Pipeline, Wishes};
 use crate::error::Location;
-use crate::ledger::Stage;
+use crate::ledger::{Class, Ledger, Stage};
 use crate::scene::{self, Effect, Style};
 use crate::world::{Census, Feature, LightSampler, Witness};
 
@@ -19,6 +19,34 @@ pub struct Row {
     pub source: Option<Location>,
     /// What runs for it, beyond what runs for every picture.
     pub stages: &'static [Stage],
+    /// What it is billed for.
+    bill: Bill,
+}
+
+/// What of a ledger an effect is billed for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Bill {
+    /// The rays of a class.
+    Class(Class),
+    /// Whole stages.
+    Stages(&'static [Stage]),
+    /// Hit filters.
+    CutOuts,
+    /// Nothing that can be told from the rest.
+    None,
+}
+
+impl Row {
+    /// The worker seconds that a ledger has for it, where they can be told from the rest. Rows are views of one sum:
+    /// a shadow ray is in its light's and in the one of shadows.
+    pub fn seconds(&self, ledger: &Ledger) -> Option<f64> {
+        match self.bill {
+            Bill::Class(class) => Some(ledger.class_seconds(class)),
+            Bill::Stages(stages) => Some(stages.iter().map(|&s| ledger.stage(s).seconds).sum()),
+            Bill::CutOuts => Some(ledger.cut_outs.seconds),
+            Bill::None => None,
+        }
+    }
 }
 
 /// Why something is on or off, and who called for it.
@@ -33,35 +61,46 @@ pub(super) fn rows(
     wishes: &Wishes,
 ) -> Vec<Row> {
     let judge = Judge { pipeline, lights, census, camera, wishes };
-    let light_stages = &[Stage::SampleLights, Stage::Shadow];
-    let rows: [(&'static str, Reason, &'static [Stage]); 23] = [
-        ("emission", judge.emission(), &[Stage::Emit]),
-        ("environment", judge.environment(), &[Stage::Environment]),
-        ("direct light of points", judge.direct(Feature::PointLight), light_stages),
-        ("direct light of directions", judge.direct(Feature::Direction), light_stages),
-        ("direct light of suns", judge.direct(Feature::Sun), light_stages),
-        ("direct light of surfaces", judge.direct(Feature::Emission), light_stages),
-        ("direct light of surroundings", judge.direct_surroundings(), light_stages),
-        ("shadows", judge.shadows(), &[Stage::Shadow]),
-        ("diffuse", judge.event(Effect::Diffuse, &[Feature::Diffuse]), &[Stage::Scatter]),
-        ("glossy", judge.event(Effect::Glossy, &[Feature::Glossy]), &[Stage::Scatter]),
-        ("mirror", judge.event(Effect::Mirror, &[Feature::Mirror]), &[Stage::Scatter]),
-        ("refraction", judge.refraction(), &[Stage::Scatter]),
-        ("absorption", judge.event(Effect::Absorption, &[Feature::Absorption]), &[Stage::Scatter]),
-        ("caustics", judge.caustics(), &[Stage::Scatter]),
-        ("textures", judge.event(Effect::Textures, &[Feature::Texture]), &[Stage::Textures]),
-        ("normal-maps", judge.event(Effect::NormalMaps, &[Feature::NormalMap]), &[Stage::Details]),
-        ("cut-outs", judge.event(Effect::CutOuts, &[Feature::CutOut]), &[Stage::Intersect]),
-        ("depth-of-field", judge.depth_of_field(), &[Stage::Lens]),
-        ("instancing", judge.instancing(), &[Stage::Intersect]),
-        ("light-sampling", judge.light_sampling(), light_stages),
-        ("choice of lights by power", judge.light_choice(), &[Stage::SampleLights]),
-        ("scatter-sampling", judge.scatter_sampling(), &[Stage::Emit, Stage::Environment]),
-        ("multiple importance sampling", judge.combination(), &[]),
-    ];
-    rows.into_iter()
-        .map(|(effect, (on, reason, source), stages)| Row { effect, on, reason, source, stages })
-        .collect()
+    let (lit, scatter) = (&[Stage::SampleLights, Stage::Shadow], &[Stage::Scatter]);
+    let direct = |feature| judge.direct(feature);
+    let event = |effect, feature| judge.event(effect, &[feature]);
+    let row = |effect, reason: Reason, stages, bill| {
+        let (on, reason, source) = reason;
+        Row { effect, on, reason, source, stages, bill }
+    };
+    let staged = |effect, reason, stages| row(effect, reason, stages, Bill::Stages(stages));
+    let classed = |effect, reason, stages, class| row(effect, reason, stages, Bill::Class(class));
+    use {Class as C, Feature as F};
+    vec![
+        staged("emission", judge.emission(), &[Stage::Emit]),
+        staged("environment", judge.environment(), &[Stage::Environment]),
+        classed("direct light of points", direct(F::PointLight), lit, C::DirectPoint),
+        classed("direct light of directions", direct(F::Direction), lit, C::DirectSun),
+        classed("direct light of suns", direct(F::Sun), lit, C::DirectSun),
+        classed("direct light of surfaces", direct(F::Emission), lit, C::DirectSurface),
+        classed(
+            "direct light of surroundings",
+            judge.direct_surroundings(),
+            lit,
+            C::DirectEnvironment,
+        ),
+        staged("shadows", judge.shadows(), &[Stage::Shadow]),
+        classed("diffuse", event(Effect::Diffuse, F::Diffuse), scatter, C::Diffuse),
+        classed("glossy", event(Effect::Glossy, F::Glossy), scatter, C::Glossy),
+        classed("mirror", event(Effect::Mirror, F::Mirror), scatter, C::Mirror),
+        classed("refraction", judge.refraction(), scatter, C::Refraction),
+        row("absorption", event(Effect::Absorption, F::Absorption), scatter, Bill::None),
+        classed("caustics", judge.caustics(), scatter, C::Caustic),
+        staged("textures", event(Effect::Textures, F::Texture), &[Stage::Textures]),
+        staged("normal-maps", event(Effect::NormalMaps, F::NormalMap), &[Stage::Details]),
+        row("cut-outs", event(Effect::CutOuts, F::CutOut), &[Stage::Intersect], Bill::CutOuts),
+        staged("depth-of-field", judge.depth_of_field(), &[Stage::Lens]),
+        row("instancing", judge.instancing(), &[Stage::Intersect], Bill::None),
+        staged("light-sampling", judge.light_sampling(), lit),
+        row("choice of lights by power", judge.light_choice(), &[Stage::SampleLights], Bill::None),
+        staged("scatter-sampling", judge.scatter_sampling(), &[Stage::Emit, Stage::Environment]),
+        row("multiple importance sampling", judge.combination(), lit, Bill::None),
+    ]
 }
 
 /// What reasons are made of.

@@ -4,17 +4,19 @@
 //! the number of threads nor the order of blocks changes a byte. The first pass is one sample a pixel
 //! over the whole image; later ones double. Prints nothing: progress is a callback.
 
+mod forecast;
 mod layers;
 mod non_finite;
 
+pub use forecast::{FORECAST_SIZE, Forecast, forecast};
 pub use layers::{Aov, Layers, render_layers};
 pub use non_finite::{NonFinite, NonFiniteSample};
 
 use crate::accel::{Accelerator, AcceptAll, HitFilter};
 use crate::error::{Error, Result};
 use crate::film::{ClassFilm, ClassSample, Film, Region};
-use crate::ledger::{Clock, Ledger, Stage, Watch};
-use crate::trace::{Block, PixelSample, Tracer, Wavefront};
+use crate::ledger::{Class, Clock, Ledger, Stage, Watch};
+use crate::trace::{Block, ClassRadiance, PixelSample, Tracer, Wavefront};
 use crate::world::CutOuts;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -100,7 +102,7 @@ pub(crate) fn thread_pool(threads: usize) -> Result<rayon::ThreadPool> {
         .map_err(|error| Error::Usage(format!("cannot start {threads} threads: {error}")))
 }
 
-fn run<A: Accelerator, F: HitFilter>(
+fn run<A: Accelerator, F: HitFilter + Clone>(
     tracer: &Tracer<'_, A>,
     filter: &F,
     job: &RenderJob<'_>,
@@ -119,6 +121,7 @@ fn run<A: Accelerator, F: HitFilter>(
 
     thread_pool(job.threads)?.broadcast(|_| {
         let begin = Instant::now();
+        let filter = filter.clone();
         let mut wavefront = Wavefront::new(job.batch);
         let mut watched: Vec<ClassSample> = Vec::new();
         let mut non_finite = NonFinite::default();
@@ -126,14 +129,14 @@ fn run<A: Accelerator, F: HitFilter>(
         while !stopped() {
             let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
             film.restart(Region { start: block.start, end: block.end });
-            wavefront.run(tracer, filter, &block, |sample, parts| {
+            wavefront.run(tracer, &filter, &block, |sample, parts| {
                 if !sample.radiance.is_finite() {
                     non_finite.record(sample, tracer.world);
                     return;
                 }
                 film.add(sample.pixel, sample.sample, sample.radiance, sample.coverage);
-                if let Some((cell, &parts)) = parts {
-                    watched.push(ClassSample { cell, sample: sample.sample, parts });
+                if let Some((cell, parts)) = parts {
+                    watch(cell, sample.sample, parts, &mut watched);
                 }
             });
             let mut clock = Clock::start();
@@ -145,6 +148,7 @@ fn run<A: Accelerator, F: HitFilter>(
             clock.charge(&mut wavefront.ledger, Stage::Accumulate);
             progress(block.paths());
         }
+        wavefront.ledger.cut_outs = filter.cost();
         wavefront.ledger.worker_seconds += begin.elapsed().as_secs_f64();
         if let Ok(mut total) = total.lock() {
             total.ledger.add(&wavefront.ledger);
@@ -159,6 +163,15 @@ fn run<A: Accelerator, F: HitFilter>(
     let seconds = start.elapsed().as_secs_f64();
     let interrupted = blocks.get(next.into_inner()).is_some();
     Ok(Rendered { film, classes, ledger, seconds, non_finite, interrupted })
+}
+
+/// Files the light of a watched sample by its class.
+fn watch(cell: u32, sample: u64, parts: &ClassRadiance, watched: &mut Vec<ClassSample>) {
+    for (&class, &radiance) in Class::ALL.iter().zip(parts) {
+        if !radiance.is_black() {
+            watched.push(ClassSample { cell, sample, class, radiance });
+        }
+    }
 }
 
 /// What workers add up.

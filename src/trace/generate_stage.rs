@@ -20,7 +20,11 @@ pub(super) struct Starts {
     /// The cell that each pixel is watched for, or [`Path::UNWATCHED`].
     cells: [u32; LANES],
     numbers: PathSamplers<LANES>,
+    /// Where on the film, in pixels, and with what weight.
+    film: [[f32; LANES]; 2],
     weights: [f32; LANES],
+    /// Where on the lens; its middle is a pinhole.
+    lens: [[f32; LANES]; 2],
     rays: CameraRays<LANES>,
 }
 
@@ -32,19 +36,15 @@ impl Starts {
             samples: [0; LANES],
             cells: [Path::UNWATCHED; LANES],
             numbers: PathSamplers::new(&Sampler::new(SamplerKind::default(), 0)),
+            film: [[0.0; LANES]; 2],
             weights: [0.0; LANES],
+            lens: [[0.5; LANES]; 2],
             rays: CameraRays::NONE,
         }
     }
 
-    /// Starts the next samples of a block, at most `limit` and [`LANES`]; returns how many.
-    pub(super) fn take<A: Accelerator>(
-        &mut self,
-        tracer: &Tracer<'_, A>,
-        isa: Isa,
-        block: &mut BlockPaths,
-        limit: usize,
-    ) -> usize {
+    /// Takes the next samples of a block, at most `limit` and [`LANES`]; returns how many.
+    pub(super) fn take(&mut self, block: &mut BlockPaths, limit: usize) -> usize {
         self.count = 0;
         let watch = block.block.watch;
         // The samples of a pixel follow each other.
@@ -59,11 +59,22 @@ impl Starts {
             self.samples[self.count] = sample;
             self.count += 1;
         }
-        if self.count > 0 {
-            // Idle lanes start what is left there from before.
-            isa.run(CameraKernel { tracer, starts: self });
-        }
         self.count
+    }
+
+    /// Draws the points on the film of what was taken. Idle lanes draw for what is left there from before.
+    pub(super) fn film<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, isa: Isa) {
+        isa.run(FilmKernel { tracer, starts: self });
+    }
+
+    /// Draws points on the lens, in place of its middle.
+    pub(super) fn lens(&mut self, isa: Isa) {
+        isa.run(LensKernel { starts: self });
+    }
+
+    /// Makes the rays.
+    pub(super) fn rays<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, isa: Isa) {
+        isa.run(RayKernel { tracer, starts: self });
     }
 
     /// The paths that were started.
@@ -80,28 +91,47 @@ impl Starts {
     }
 }
 
-struct CameraKernel<'a, 't, A> {
+struct FilmKernel<'a, 't, A> {
     tracer: &'a Tracer<'t, A>,
     starts: &'a mut Starts,
 }
 
-impl<A: Accelerator> Kernel for CameraKernel<'_, '_, A> {
+impl<A: Accelerator> Kernel for FilmKernel<'_, '_, A> {
     #[inline(always)]
     fn run(self) {
-        let tracer = self.tracer;
-        let Starts { pixels, samples, numbers, weights, rays, .. } = self.starts;
-        let [mut pairs, mut film, mut lens] = [[[0.5; LANES]; 2]; 3];
-        numbers.begin(&tracer.sampler, pixels, samples);
+        let Starts { pixels, samples, numbers, film, weights, .. } = self.starts;
+        let mut pairs = [[0.5; LANES]; 2];
+        numbers.begin(&self.tracer.sampler, pixels, samples);
         numbers.two(|_| Dimension::Film, &mut pairs);
-        tracer.filter.sample_lanes(&pairs, &mut film, weights);
+        self.tracer.filter.sample_lanes(&pairs, film, weights);
         for (film, pixels) in film.iter_mut().zip(pixels) {
             for (film, &mut pixel) in film.iter_mut().zip(pixels) {
                 *film += pixel as f32 + 0.5;
             }
         }
-        if tracer.plan.pipeline.lens {
-            numbers.two(|_| Dimension::Lens, &mut lens);
-        }
-        tracer.camera.rays(&film, &lens, rays);
+    }
+}
+
+struct LensKernel<'a> {
+    starts: &'a mut Starts,
+}
+
+impl Kernel for LensKernel<'_> {
+    #[inline(always)]
+    fn run(self) {
+        self.starts.numbers.two(|_| Dimension::Lens, &mut self.starts.lens);
+    }
+}
+
+struct RayKernel<'a, 't, A> {
+    tracer: &'a Tracer<'t, A>,
+    starts: &'a mut Starts,
+}
+
+impl<A: Accelerator> Kernel for RayKernel<'_, '_, A> {
+    #[inline(always)]
+    fn run(self) {
+        let Starts { film, lens, rays, .. } = self.starts;
+        self.tracer.camera.rays(film, lens, rays);
     }
 }

@@ -128,7 +128,7 @@ pub struct PixelSample {
 /// Radiance of one path by the class of its transport, times the filter's weight: adds up to its whole radiance.
 pub type ClassRadiance = [Rgb; Class::COUNT];
 
-/// Where the parts of a watched path go: its cell, and them.
+/// Where the parts of a watched path go: the cell of its pixel, and them.
 pub type Watched<'a> = Option<(u32, &'a ClassRadiance)>;
 
 /// The class of light that is scattered once.

@@ -81,14 +81,17 @@ impl Path {
         let confirmed = self.confirmed();
         let event = event_of(kind);
         let after = confirmed.followed_by(event);
-        let is_allowed = after.are_within(pipeline.events);
         // Of a sharp event both ways of finding lights know: it counts whatever the next ray meets.
         let is_sharp = is_delta || kind == LobeKind::Refraction;
         (self.events, self.pending) =
             if is_sharp { (after, Events::NONE) } else { (confirmed, event) };
-        self.only_looks_for_lights = !is_allowed;
         self.ray_class = after.class().unwrap_or(Class::Seen);
+        if !pipeline.bounded {
+            return true;
+        }
 
+        let is_allowed = after.are_within(pipeline.events);
+        self.only_looks_for_lights = !is_allowed;
         let may_meet_light = pipeline.emission || pipeline.environment;
         let finds_lights = may_meet_light
             && (is_delta || pipeline.scatter_sampling)

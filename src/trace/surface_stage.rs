@@ -117,7 +117,7 @@ impl Wavefront {
             }
         }
         let finished = &mut self.finished;
-        if pipeline.is_bounded() {
+        if pipeline.bounded {
             self.vertices.retain(|vertex| {
                 let path = &slots[vertex.slot as usize];
                 let goes_on = path.bounce + 1 < pipeline.max_depth && !path.only_looks_for_lights;

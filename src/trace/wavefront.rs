@@ -114,7 +114,7 @@ impl Wavefront {
             self.tell_apart();
             self.environment(tracer, &mut clock);
             self.interact(tracer, &mut clock);
-            if pipeline.emission || pipeline.is_bounded() {
+            if pipeline.emission || pipeline.bounded {
                 self.emit(tracer, &mut clock);
             }
             self.active.clear();
@@ -141,8 +141,19 @@ impl Wavefront {
         clock: &mut Clock,
     ) {
         let before = self.active.len();
-        let Self { slots, parts, free, active, begun, .. } = self;
-        while begun.take(tracer, self.isa, starts, free.len()) > 0 {
+        let Self { slots, parts, free, active, begun, ledger, isa, .. } = self;
+        loop {
+            let count = begun.take(starts, free.len());
+            if count == 0 {
+                break;
+            }
+            begun.film(tracer, *isa);
+            if tracer.plan.pipeline.lens {
+                clock.charge(ledger, Stage::Generate);
+                begun.lens(*isa);
+                clock.lap(ledger, Stage::Lens, count);
+            }
+            begun.rays(tracer, *isa);
             for path in begun.paths(tracer) {
                 if let Some(slot) = free.pop() {
                     if path.cell != Path::UNWATCHED {

@@ -3,6 +3,7 @@
 pub(crate) mod chi_square;
 pub(crate) mod program;
 pub(crate) mod reference_obj;
+pub(crate) mod scene_files;
 pub(crate) mod scenes;
 pub(crate) mod schema;
 pub(crate) mod z_test;

@@ -14,7 +14,7 @@ use glint::render::{RenderJob, Rendered, render};
 use glint::sampling::{Sampler, SamplerKind};
 use glint::scene::{
     self, ColorInput, Effects, Emission, Environment, Light, Material, MaterialId, MeshData, Model,
-    ModelId, Placement, Projection, ScalarInput, Scene, Surface,
+    ModelId, Placement, Projection, ScalarInput, Scene, Style, Surface,
 };
 use glint::trace::{Block, PixelSample, Tracer, Wavefront, naive};
 use glint::world::{CutOuts, World};
@@ -176,7 +176,11 @@ impl Shot {
         };
         let wishes =
             Wishes { effects: self.effects, max_depth: self.max_depth, hide_background: false };
-        let plan = Plan::new(&world, &whole.census(), &camera, &wishes);
+        let census = match self.effects.style {
+            Style::AmbientOcclusion => world.census(),
+            Style::Auto | Style::All => whole.census(),
+        };
+        let plan = Plan::new(&world, &census, &camera, &wishes);
         (world, plan)
     }
 

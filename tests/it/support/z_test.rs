@@ -35,3 +35,21 @@ pub(crate) fn assert_mean_power(
         assert!(rejects(wrong), "{what}: {mean} +- {error} cannot tell {truth} from {wrong}");
     }
 }
+
+/// Asserts that two estimates of the same have the same mean, and that an error of `power`, relative, in one of them
+/// would have been seen. `pairs` are independent of each other; the two of a pair need not be.
+pub(crate) fn assert_difference(what: &str, pairs: &[[f64; 2]], power: f64) {
+    let n = pairs.len() as f64;
+    let mean = pairs.iter().map(|pair| pair[1]).sum::<f64>() / n;
+    let test = |factor: f64| {
+        let differences = || pairs.iter().map(|[a, b]| a * factor - b);
+        let difference = differences().sum::<f64>() / n;
+        let squares = differences().map(|d| (d - difference).powi(2)).sum::<f64>();
+        let error = (squares / (n - 1.0) / n).sqrt();
+        (difference, error, difference.abs() > SIGMAS * error + ROUNDING * mean.abs())
+    };
+    let (difference, error, rejects) = test(1.0);
+    assert!(!rejects, "{what}: {mean}, and {difference} +- {error} more");
+    let is_told = test(1.0 + power).2 || test(1.0 - power).2;
+    assert!(is_told, "{what}: {mean}, and {difference} +- {error} more: {power} could not be told");
+}

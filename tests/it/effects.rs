@@ -1,0 +1,165 @@
+//! What the scene does not call for is not simulated, and nothing is lost: `auto` against `all` on every scene of the
+//! repository, on both backends; and proof that each decision to spare something could have been caught.
+
+#![cfg(feature = "embree")]
+
+use crate::support::effort;
+use crate::support::scene_files::{Backend, FileScene, Small, paths};
+use crate::support::z_test::assert_difference;
+use glint::accel::embree::EmbreeAccelerator;
+use glint::film::Film;
+use glint::ledger::Stage;
+use glint::math::Vec3;
+use glint::plan::{Pipeline, Plan};
+use glint::render::Rendered;
+use glint::world::Details;
+
+const SMALL: Small = Small { size: [32, 18], spp: 4, seed: 0 };
+
+/// Whether `auto` samples other lights than `all` in this scene: it leaves a constant environment to scattering.
+fn changes_estimator(scene: &FileScene) -> bool {
+    let [auto, all] = ["auto", "all"].map(|effects| scene.plan(effects).1);
+    let world = &scene.whole;
+    let of = |plan: &Plan| plan.lights.at_infinity(world, Vec3::Y).map(|seen| seen.2).collect();
+    let sees = |plan: &Plan| -> Vec<f32> { of(plan) };
+    auto.pipeline.max_depth > 1 && sees(&auto) != sees(&all)
+}
+
+#[test]
+fn auto_equals_all_bit_by_bit_in_every_scene_on_both_backends() {
+    let mut bitwise = 0;
+    for path in paths() {
+        let scene = FileScene::load(&path);
+        for &backend in Backend::ALL {
+            let film = |effects: &str| {
+                let (world, plan) = scene.plan(effects);
+                scene.render(&world, &plan, backend, SMALL).film
+            };
+            let all = film("all");
+            // Where the estimator is another one, everything else that is spared must still change nothing.
+            let (world, plan) = scene.plan_with_all_lights();
+            let spared = scene.render(&world, &plan, backend, SMALL).film;
+            assert!(spared == all, "{} {backend:?}: something spared was needed", scene.name);
+            if !changes_estimator(&scene) {
+                assert!(film("auto") == all, "{} {backend:?}: auto is not all", scene.name);
+                bitwise += 1;
+            }
+        }
+    }
+    assert!(bitwise >= 8, "{bitwise} comparisons");
+}
+
+/// Mean luminance of a film.
+fn mean_luminance(film: &Film) -> f64 {
+    let pixels = film.develop().radiance;
+    pixels.iter().map(|p| f64::from(p.luminance())).sum::<f64>() / pixels.len() as f64
+}
+
+#[test]
+fn auto_has_the_mean_of_all_where_it_samples_other_lights() {
+    let seeds = effort(24, 240) as u64;
+    let mut compared = 0;
+    for path in paths() {
+        let scene = FileScene::load(&path);
+        if !changes_estimator(&scene) {
+            continue;
+        }
+        compared += 1;
+        // The same scattered rays: only what is done with the lights differs, so pairs tell more than two means.
+        let means = ["auto", "all"].map(|effects| {
+            let (world, plan) = scene.plan(effects);
+            let embree = EmbreeAccelerator::build(world.geometry.clone(), 2).expect("it builds");
+            let of = |seed| scene.render_on(&world, &plan, &embree, Small { seed, ..SMALL });
+            (0..seeds).map(|seed| mean_luminance(&of(seed).film)).collect::<Vec<f64>>()
+        });
+        let pairs: Vec<[f64; 2]> = means[0].iter().zip(&means[1]).map(|(a, b)| [*a, *b]).collect();
+        if std::env::var_os("GLINT_SHOW").is_some() {
+            let n = seeds as f64;
+            let m = means[1].iter().sum::<f64>() / n;
+            let d: Vec<f64> = pairs.iter().map(|[a, b]| a - b).collect();
+            let md = d.iter().sum::<f64>() / n;
+            let sd = (d.iter().map(|x| (x - md).powi(2)).sum::<f64>() / (n - 1.0) / n).sqrt();
+            eprintln!("{} {m} diff {:.4} +- {:.4}", scene.name, md / m, sd / m);
+            continue;
+        }
+        assert_difference(&scene.name, &pairs, 0.01);
+    }
+    assert!(compared >= 5, "{compared} scenes");
+}
+
+#[test]
+fn all_runs_every_stage_that_auto_spares() {
+    for path in paths() {
+        let scene = FileScene::load(&path);
+        let rendered = |effects: &str| {
+            let (world, plan) = scene.plan(effects);
+            (scene.render(&world, &plan, Backend::Embree, SMALL), plan)
+        };
+        let (all, _) = rendered("all");
+        let (auto, plan) = rendered("auto");
+        for &stage in Stage::ALL {
+            let calls = |rendered: &Rendered| rendered.ledger.stage(stage).calls;
+            assert!(calls(&all) > 0, "{}: {} never ran", scene.name, stage.name());
+            let runs = plan.pipeline.runs(stage);
+            assert_eq!(calls(&auto) > 0, runs, "{}: {}", scene.name, stage.name());
+        }
+        if plan.pipeline.hit_filter {
+            assert!(auto.ledger.cut_outs.calls > 0, "{}", scene.name);
+        } else {
+            assert_eq!(auto.ledger.cut_outs.calls, 0, "{}", scene.name);
+        }
+        assert!(all.ledger.cut_outs.calls > 0, "{}", scene.name);
+    }
+}
+
+/// A decision that was wrongly made, as a change to a plan.
+type Mutation = (&'static str, fn(&mut Pipeline));
+
+const MUTATIONS: [Mutation; 13] = [
+    ("bounces", |p| (p.max_depth, p.bounded) = (1, true)),
+    ("bounces after the first", |p| (p.max_depth, p.bounded) = (2, true)),
+    ("lens", |p| p.lens = false),
+    ("hit filter", |p| p.hit_filter = false),
+    ("details", |p| p.details = Details::Nowhere),
+    ("emission", |p| p.emission = false),
+    ("environment", |p| p.environment = false),
+    ("light sampling", |p| p.light_sampling = false),
+    ("choice of lights", |p| p.light_choice = false),
+    ("shadows", |p| p.shadows = false),
+    ("combination", |p| p.combination = false),
+    ("absorption", |p| p.absorption = false),
+    ("roulette", |p| p.roulette = false),
+];
+
+/// The mutated run: each decision, forced the wrong way, changes the picture of a scene in which `auto` makes it the
+/// right way, so that the comparison above would have failed.
+#[test]
+fn every_wrong_decision_would_have_been_seen() {
+    let mut unseen: Vec<Mutation> = MUTATIONS.to_vec();
+    for path in paths() {
+        let scene = FileScene::load(&path);
+        let (world, plan) = scene.plan_with_all_lights();
+        let embree = EmbreeAccelerator::build(world.geometry.clone(), 2).expect("it builds");
+        let small = Small { size: [16, 9], spp: 4, seed: 0 };
+        let right = scene.render_on(&world, &plan, &embree, small).film;
+        unseen.retain(|(_, mutate)| {
+            let mut wrong = plan.clone();
+            mutate(&mut wrong.pipeline);
+            scene.render_on(&world, &wrong, &embree, small).film == right
+        });
+    }
+    let names: Vec<&str> = unseen.iter().map(|mutation| mutation.0).collect();
+    assert!(names.is_empty(), "no scene notices without {names:?}");
+}
+
+#[test]
+fn stages_add_up_to_the_time_of_the_workers() {
+    for path in paths().iter().filter(|path| path.ends_with("cornell.toml")) {
+        let scene = FileScene::load(path);
+        let (world, plan) = scene.plan("auto");
+        let small = Small { size: [128, 128], spp: 8, seed: 0 };
+        let ledger = scene.render(&world, &plan, Backend::Embree, small).ledger;
+        let covered = ledger.seconds() / ledger.worker_seconds;
+        assert!((0.95..=1.0).contains(&covered), "{covered} of the time is in stages");
+    }
+}

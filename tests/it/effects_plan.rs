@@ -1,0 +1,128 @@
+//! The plan's table: what is on and off, why, and in which line of which file.
+
+use glint::load::load_scene;
+use glint::plan::{Plan, Row, Wishes};
+use glint::scene::{Effect, Effects};
+use glint::world::World;
+use std::path::Path;
+
+const TRIANGLE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl used\nf 1 2 3\n";
+const LIBRARY: &str = "newmtl used\nKd 0.5 0.5 0.5\n\nnewmtl unused\nillum 7\nNi 1.5\nKe 1 1 1\n";
+
+/// The rows of a scene file of this text, beside a model with a material that is used and one that is not.
+fn rows(scene: &str, effects: &str) -> Vec<Row> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("a.obj", TRIANGLE);
+    write("a.mtl", LIBRARY);
+    write("scene.toml", scene);
+    let mut scene = load_scene(&folder.path().join("scene.toml")).expect("a scene");
+    let camera = scene.cameras.remove(0);
+    let effects: Effects = effects.parse().expect("effects");
+    let whole = World::compile(scene).expect("it compiles");
+    let world = whole.with_effects(&effects).expect("it has less");
+    let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
+    Plan::new(&world, &whole.census(), &camera, &wishes).rows
+}
+
+fn row<'r>(rows: &'r [Row], effect: &str) -> &'r Row {
+    rows.iter().find(|row| row.effect == effect).expect("a row of this name")
+}
+
+/// File name and line of what calls for a row.
+fn source(row: &Row) -> Option<(String, usize)> {
+    row.source.as_ref().map(|source| {
+        let name = Path::new(&source.path).file_name().expect("a file");
+        (name.to_string_lossy().into_owned(), source.line)
+    })
+}
+
+const CAMERA: &str =
+    "[camera.front]\nfrom = [0, 0, 3]\nto = [0, 0, 0]\nperspective = { vertical_fov = 35 }\n";
+
+#[test]
+fn reasons_name_the_line() {
+    // Lines 1 to 4 are the camera.
+    let scene = format!(
+        "{CAMERA}[[object]]\nfile = 'a.obj'\n[[object]]\nfile = 'a.obj'\nmaterial = 'pane'\n\
+         [material.pane.dielectric]\neta = 1.5\nabsorption = 0.5\n\
+         [[light.spot]]\nposition = [0, 2, 0]\ndirection = [0, -1, 0]\nintensity = 1\n\
+         outer_angle = 40\ninner_angle = 20\n\
+         [[light.directional]]\ndirection = [0, -1, 0]\nirradiance = 1\n\
+         [environment.sky]\nelevation = 30\nazimuth = 0\n"
+    );
+    let rows = rows(&scene, "auto");
+    for (effect, place) in [
+        ("diffuse", Some(("a.mtl", 1))),
+        ("refraction", Some(("scene.toml", 10))),
+        ("absorption", Some(("scene.toml", 10))),
+        ("direct light of points", Some(("scene.toml", 13))),
+        ("direct light of directions", Some(("scene.toml", 19))),
+        ("direct light of surroundings", Some(("scene.toml", 22))),
+        ("direct light of suns", Some(("scene.toml", 22))),
+        ("instancing", None),
+        ("caustics", Some(("scene.toml", 10))),
+    ] {
+        let row = row(&rows, effect);
+        assert!(row.on, "{effect}: {}", row.reason);
+        let place = place.map(|(name, line)| (name.to_owned(), line));
+        assert_eq!(source(row), place, "{effect}: {}", row.reason);
+    }
+    assert!(row(&rows, "direct light of points").reason.contains("hard shadows"));
+    assert!(row(&rows, "direct light of suns").reason.contains("soft shadows"));
+    for effect in ["emission", "glossy", "textures", "normal-maps", "cut-outs"] {
+        assert!(!row(&rows, effect).on, "{effect}");
+    }
+    let lens = row(&rows, "depth-of-field");
+    assert!(!lens.on && source(lens) == Some(("scene.toml".into(), 1)), "{lens:?}");
+}
+
+#[test]
+fn what_nothing_shows_calls_for_nothing() {
+    let scene = format!(
+        "{CAMERA}[[object]]\nfile = 'a.obj'\n[[light.point]]\nposition = [0, 1, 1]\nintensity = 1\n\
+         [[light.point]]\nposition = [0, 1, 1]\nintensity = 0\n\
+         [material.unplaced.mirror]\nreflectance = 1\n"
+    );
+    let auto = rows(&scene, "auto");
+    let mut on: Vec<&str> = auto.iter().filter(|row| row.on).map(|row| row.effect).collect();
+    on.sort_unstable();
+    let expected = ["diffuse", "direct light of points", "light-sampling", "shadows"];
+    assert_eq!(on, expected);
+    // One light has power: there is nothing to choose, nothing to combine, nothing to meet.
+    assert_eq!(row(&auto, "choice of lights by power").reason, "one light is sampled");
+    assert!(row(&auto, "multiple importance sampling").reason.contains("exact"));
+}
+
+#[test]
+fn a_constant_environment_is_left_to_scattering() {
+    let scene =
+        format!("{CAMERA}[[object]]\nfile = 'a.obj'\n[environment.constant]\nradiance = 1\n");
+    let auto = rows(&scene, "auto");
+    assert!(!row(&auto, "light-sampling").on && !row(&auto, "shadows").on);
+    assert!(row(&auto, "light-sampling").reason.contains("scattering alone"));
+    assert!(row(&auto, "direct light of surroundings").on);
+    // Without scattering to find it, it is sampled.
+    let alone = rows(&scene, "no-scatter-sampling");
+    assert!(row(&alone, "light-sampling").on && row(&alone, "shadows").on);
+}
+
+#[test]
+fn what_the_user_takes_out_is_said() {
+    let scene =
+        format!("{CAMERA}[[object]]\nfile = 'a.obj'\n[environment.constant]\nradiance = 1\n");
+    for &effect in Effect::ALL {
+        let rows = rows(&scene, &format!("all,no-{}", effect.name()));
+        let named: Vec<&Row> = rows.iter().filter(|row| row.effect == effect.name()).collect();
+        let all: Vec<&Row> = match effect {
+            Effect::Direct => rows.iter().filter(|row| row.effect.starts_with("direct")).collect(),
+            _ => named,
+        };
+        assert!(!all.is_empty(), "{effect:?} has no row");
+        for row in all {
+            assert!(!row.on && row.reason.contains("left out: --effects"), "{row:?}");
+        }
+        let others = rows.iter().filter(|row| row.reason == "--effects all").count();
+        assert!(others >= 14, "{effect:?}: {others} rows still on");
+    }
+}
