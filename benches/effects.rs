@@ -5,7 +5,6 @@
 //! of its replicates, and time to equal error is time times noise. `cargo bench --bench effects -- [SCENE.toml ...]`
 //! (default: every scene of the repository, and a diffuse ball in a white environment); prints a Markdown table.
 
-use glint::accel::Accelerator;
 #[cfg(feature = "bvh")]
 use glint::accel::bvh::Bvh as Backend;
 #[cfg(not(feature = "bvh"))]

@@ -32,6 +32,9 @@ pub(super) enum Command {
     /// Renders an OBJ model or a TOML scene to EXR, PNG or HDR.
     #[command(after_help = RENDER_EXAMPLES)]
     Render(Box<Render>),
+    /// Says which effects a scene calls for, why, what they will cost and what is spared; renders nothing.
+    #[command(after_help = PLAN_EXAMPLES)]
+    Plan(Box<Render>),
     /// Races Embree against the in-house BVH on your own scenes, and proves that they agree.
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
@@ -74,6 +77,9 @@ pub(super) struct Render {
     /// Write statistics as JSON
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(super) stats: Option<PathBuf>,
+    /// Write a page with the effects, their reasons, and the bill as stacked bars
+    #[arg(long, value_name = "FILE.html", help_heading = "Output")]
+    pub(super) report: Option<PathBuf>,
     /// Print statistics as JSON to standard output
     #[arg(long, help_heading = "Output")]
     pub(super) json: bool,
@@ -151,6 +157,21 @@ pub(super) struct Render {
     #[arg(long, value_name = "x,y,sample", value_parser = replay, help_heading = "Machine")]
     pub(super) replay: Option<([u32; 2], u64)>,
 }
+
+const PLAN_EXAMPLES: &str = "\
+Examples:
+  glint plan scene.toml
+      the table of effects: on or off, why, in which line of which file, what it will cost
+  glint plan model.obj --effects all,no-refraction
+      how much light, and how much time, refraction is
+  glint plan scene.toml --json
+
+It takes the options of `glint render`: put `plan` in place of `render` in any command line.
+
+--effects: auto (what the scene calls for), all (everything runs; the picture is the same), path (auto), direct, whitted,
+ambient-occlusion; or a list, which begins with one of these, with an effect (nothing but what is listed) or with no-EFFECT
+(auto without it), and adds EFFECT or takes out no-EFFECT. Effects: emission, environment, direct, shadows, diffuse, glossy,
+mirror, refraction, absorption, caustics, textures, normal-maps, cut-outs, depth-of-field, light-sampling, scatter-sampling.";
 
 const BENCH_EXAMPLES: &str = "\
 Examples:

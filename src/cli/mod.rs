@@ -4,10 +4,14 @@
 //! signal with nothing written.
 
 mod args;
+mod backend;
 mod bench;
 mod generate;
+mod ledger_table;
 mod output;
+mod plan;
 mod plan_table;
+mod prepare;
 mod progress;
 mod render;
 mod report;
@@ -36,6 +40,7 @@ pub fn main() -> ExitCode {
     let args = args::Glint::parse();
     let code = match args.command {
         args::Command::Render(args) => render::run(&args),
+        args::Command::Plan(args) => plan::run(&args),
         args::Command::Bench(args) => bench::run(&args),
         args::Command::Generate(args) => generate::run(&args),
     };

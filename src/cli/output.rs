@@ -60,7 +60,9 @@ impl Outputs {
                 Ok((path.clone(), format))
             })
             .collect::<Result<_>>()?;
-        args.stats.as_deref().map_or(Ok(()), check_writable)?;
+        for path in args.stats.iter().chain(&args.report) {
+            check_writable(path)?;
+        }
         Ok(Self { files })
     }
 

@@ -4,21 +4,23 @@
 //! machine did goes to the statistics.
 
 use super::args::Render;
-use super::plan_table;
+use super::prepare::Prepared;
 use super::render::Job;
 use super::select::Settings;
 use super::statistics::{Statistics, command};
+use super::{ledger_table, plan_table};
 use crate::error::{Error, Result, Warning};
 use crate::film::{ClassShare, Region};
 use crate::geometry::PrimitiveId;
 use crate::image::{Attribute, write_whole};
 use crate::math::DVec3;
 use crate::os::Isa;
-use crate::plan::Plan;
-use crate::render::Rendered;
+use crate::render::{Forecast, Rendered};
 use crate::scene::{self, Effect};
+use crate::study::report::render_page;
 use crate::trace::PixelSample;
 use crate::world::World;
+use serde::Serialize;
 use std::io::Write;
 
 /// Writes a line to stderr; a closed stderr is nobody's error.
@@ -52,10 +54,21 @@ pub(super) fn backend(args: &Render, name: &str) {
 }
 
 /// Which effects are simulated, and why.
-pub(super) fn plan(args: &Render, plan: &Plan) {
-    for line in plan_table::lines(plan) {
-        say(args, &line);
-    }
+pub(super) fn plan(args: &Render, prepared: &Prepared, forecast: Option<&Forecast>) {
+    say_all(args, &plan_table::head(prepared, forecast));
+}
+
+/// Lines to stderr.
+pub(super) fn say_all(args: &Render, lines: &[String]) {
+    lines.iter().for_each(|line| say(args, line));
+}
+
+/// JSON to stdout.
+pub(super) fn json(value: &impl Serialize) -> Result<()> {
+    let json = serde_json::to_string_pretty(value)
+        .map_err(|e| Error::Usage(format!("what was found cannot be written: {e}")))?;
+    let _ = writeln!(std::io::stdout(), "{json}");
+    Ok(())
 }
 
 /// What will be rendered, defaults included.
@@ -115,9 +128,8 @@ pub(super) fn finished(
         let (low, high) = rendered.film.samples();
         say(args, &format!("interrupted: {low} to {high} samples a pixel"));
     }
-    for line in statistics.summary() {
-        say(args, &line);
-    }
+    say_all(args, &ledger_table::lines(rendered));
+    say_all(args, &statistics.summary());
     for example in &rendered.non_finite.examples {
         let [x, y] = example.pixel;
         say(
@@ -146,6 +158,13 @@ pub(super) fn finished(
     if let Some(path) = &args.stats {
         write_whole(path, |file| file.write_all(json.as_bytes()))?;
     }
+    if let Some(path) = &args.report {
+        let title = args.scene.display().to_string();
+        let mut facts = vec![command()];
+        facts.extend(statistics.summary());
+        let page = render_page(&title, &facts, &job.prepared.plan, rendered);
+        write_whole(path, |file| file.write_all(page.as_bytes()))?;
+    }
     if args.json {
         let _ = writeln!(std::io::stdout(), "{json}");
     }
@@ -153,12 +172,8 @@ pub(super) fn finished(
 }
 
 /// Reproducible facts for the image's header.
-pub(super) fn metadata(
-    job: &Job<'_>,
-    rendered: &Rendered,
-    world: &World,
-) -> Vec<(&'static str, Attribute)> {
-    let settings = job.settings;
+pub(super) fn metadata(job: &Job<'_>, rendered: &Rendered) -> Vec<(&'static str, Attribute)> {
+    let Prepared { settings, world, plan, fingerprint, .. } = job.prepared;
     let text = |value: String| Attribute::Text(value);
     let share = |s: &ClassShare| {
         format!(
@@ -170,7 +185,7 @@ pub(super) fn metadata(
     };
     let shares: Vec<String> = rendered.classes.shares(&rendered.film).1.iter().map(share).collect();
     let named = |rows: Vec<&str>| if rows.is_empty() { "nothing".into() } else { rows.join(", ") };
-    let simulated = job.plan.rows.iter().filter(|row| row.on).map(|row| row.effect).collect();
+    let simulated = plan.rows.iter().filter(|row| row.on).map(|row| row.effect).collect();
     let lacks = settings.effects.left_out().map(Effect::name).collect();
     let (low, high) = rendered.film.samples();
     let [width, height] = settings.size;
@@ -179,7 +194,7 @@ pub(super) fn metadata(
     vec![
         ("glint.version", text(env!("CARGO_PKG_VERSION").into())),
         ("glint.command", text(command())),
-        ("glint.fingerprint", text(job.fingerprint.clone())),
+        ("glint.fingerprint", text(fingerprint.clone())),
         ("glint.size", text(format!("{width}x{height}"))),
         ("glint.region", text(format!("{},{},{},{}", start[0], start[1], end[0], end[1]))),
         (

@@ -2,14 +2,14 @@
 //!
 //! Its schema is `tests/schemas/render.json`, generated from these types by a test. Must not print.
 
+use super::plan;
 use super::render::Job;
 use crate::accel::BuildStats;
 use crate::film::{ClassShare, Film};
 use crate::ledger::{Class, Ledger, Stage};
 use crate::os::peak_rss_bytes;
 use crate::plan::Row;
-use crate::render::Rendered;
-use crate::world::World;
+use crate::render::{Forecast, Rendered};
 use serde::Serialize;
 
 /// Wall-clock seconds of each phase.
@@ -101,12 +101,14 @@ struct Rays {
 /// One effect or strategy: whether it was simulated, and why.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-struct PlanRow {
+pub(super) struct PlanRow {
     effect: &'static str,
     on: bool,
     reason: String,
     /// `FILE:LINE` of what calls for it.
     source: Option<String>,
+    /// Part of the time that it was predicted to take; of what is off, that it would take if everything ran.
+    predicted_share: Option<f64>,
 }
 
 /// What the render cost, and what for.
@@ -149,11 +151,11 @@ struct StageRow {
 impl Statistics {
     pub(super) fn new(
         job: &Job<'_>,
-        world: &World,
         build: BuildStats,
         rendered: &Rendered,
         mut seconds: Phases,
     ) -> Self {
+        let world = &job.prepared.world;
         seconds.total = seconds.load + seconds.build + seconds.render + seconds.write;
         let ledger = &rendered.ledger;
         let (watched_pixels, shares) = rendered.classes.shares(&rendered.film);
@@ -193,7 +195,7 @@ impl Statistics {
                 total: ledger.rays(),
             },
             rays_per_second: ledger.rays() as f64 / rendered.seconds.max(1e-9),
-            plan: job.plan.rows.iter().map(PlanRow::new).collect(),
+            plan: plan::rows(&job.prepared.plan, None),
             ledger: Bill {
                 worker_seconds: ledger.worker_seconds,
                 stages: stage_rows(ledger),
@@ -201,7 +203,7 @@ impl Statistics {
                 watched_pixels,
             },
             non_finite: rendered.non_finite.count,
-            fingerprint: job.fingerprint.clone(),
+            fingerprint: job.prepared.fingerprint.clone(),
         }
     }
 
@@ -234,9 +236,14 @@ impl Statistics {
 }
 
 impl PlanRow {
-    fn new(row: &Row) -> Self {
-        let source = row.source.as_ref().map(ToString::to_string);
-        Self { effect: row.effect, on: row.on, reason: row.reason.clone(), source }
+    pub(super) fn new(row: &Row, forecast: Option<&Forecast>) -> Self {
+        Self {
+            effect: row.effect,
+            on: row.on,
+            reason: row.reason.clone(),
+            source: row.source.as_ref().map(ToString::to_string),
+            predicted_share: forecast.and_then(|forecast| forecast.share(row)),
+        }
     }
 }
 
@@ -305,6 +312,7 @@ mod tests {
     #[test]
     fn the_schemas_in_the_repository_are_those_of_the_types() {
         schema_is_that_of::<Statistics>("render");
+        schema_is_that_of::<plan::PlanReport>("plan");
         schema_is_that_of::<bench::Report>("bench");
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn rows(
 ) -> Vec<Row> {
     let judge = Judge { pipeline, lights, census, camera, wishes };
     let (lit, scatter) = (&[Stage::SampleLights, Stage::Shadow], &[Stage::Scatter]);
-    let direct = |feature| judge.direct(feature);
+    let direct = |features| judge.direct(features);
     let event = |effect, feature| judge.event(effect, &[feature]);
     let row = |effect, reason: Reason, stages, bill| {
         let (on, reason, source) = reason;
@@ -74,16 +74,10 @@ pub(super) fn rows(
     vec![
         staged("emission", judge.emission(), &[Stage::Emit]),
         staged("environment", judge.environment(), &[Stage::Environment]),
-        classed("direct light of points", direct(F::PointLight), lit, C::DirectPoint),
-        classed("direct light of directions", direct(F::Direction), lit, C::DirectSun),
-        classed("direct light of suns", direct(F::Sun), lit, C::DirectSun),
-        classed("direct light of surfaces", direct(F::Emission), lit, C::DirectSurface),
-        classed(
-            "direct light of surroundings",
-            judge.direct_surroundings(),
-            lit,
-            C::DirectEnvironment,
-        ),
+        classed("direct light of points", direct(&[F::PointLight]), lit, C::DirectPoint),
+        classed("direct light of suns", direct(&[F::Sun, F::Direction]), lit, C::DirectSun),
+        classed("direct light of surfaces", direct(&[F::Emission]), lit, C::DirectSurface),
+        classed("direct light around", direct(&[F::Image, F::Constant]), lit, C::DirectEnvironment),
         staged("shadows", judge.shadows(), &[Stage::Shadow]),
         classed("diffuse", event(Effect::Diffuse, F::Diffuse), scatter, C::Diffuse),
         classed("glossy", event(Effect::Glossy, F::Glossy), scatter, C::Glossy),
@@ -133,8 +127,8 @@ fn called_for(witness: &Witness) -> Reason {
 const fn nothing(feature: Feature) -> &'static str {
     match feature {
         Feature::PointLight => "no point or spot light",
-        Feature::Direction => "no directional light without extent",
-        Feature::Sun => "no sun",
+        Feature::Direction => "no directional light",
+        Feature::Sun => "no sun and no other directional light",
         Feature::Emission => "no surface emits",
         Feature::Constant => "no constant environment",
         Feature::Image => "no sky and no image around the scene",
@@ -190,29 +184,24 @@ impl Judge<'_> {
     }
 
     /// Direct light of one kind of lights.
-    fn direct(&self, feature: Feature) -> Reason {
+    fn direct(&self, features: &[Feature]) -> Reason {
         self.with(Effect::Direct, || {
-            let found = match self.found(&[feature]) {
+            let found = match self.found(features) {
                 Ok(found) => found,
                 Err(none) => return none,
             };
             if self.pipeline.max_depth < 2 {
                 return off("nothing scatters it, or --max-depth 1");
             }
-            let shadows = match feature {
-                Feature::PointLight | Feature::Direction => "hard",
-                _ => "soft",
+            let is_hard = |f: &Feature| matches!(f, Feature::PointLight | Feature::Direction);
+            let has = |hard| features.iter().any(|f| is_hard(f) == hard && self.census.has(*f));
+            let shadows = match (has(true), has(false)) {
+                (true, true) => "hard and soft",
+                (true, false) => "hard",
+                (false, _) => "soft",
             };
             (true, format!("{}: {shadows} shadows", found.1), found.2)
         })
-    }
-
-    fn direct_surroundings(&self) -> Reason {
-        let by = match self.census.has(Feature::Image) {
-            true => Feature::Image,
-            false => Feature::Constant,
-        };
-        self.direct(by)
     }
 
     fn shadows(&self) -> Reason {

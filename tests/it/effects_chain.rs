@@ -3,6 +3,7 @@
 #![cfg(feature = "embree")]
 
 use crate::support::scenes::{Builder, Shot, cornell, cornell_shot, zoo, zoo_shot};
+use crate::support::z_test::assert_difference;
 use glint::film::ClassShare;
 use glint::ledger::Class;
 use glint::math::Rgb;
@@ -108,6 +109,29 @@ fn shares_add_up() {
         let sum = |of: fn(&ClassShare) -> f64| shares.iter().map(of).sum::<f64>();
         assert!((sum(|s| s.energy) - 1.0).abs() < 1e-12, "{name} {shares:?}");
         assert!((sum(|s| s.variance) - 1.0).abs() < 1e-9, "{name} {shares:?}");
+    }
+}
+
+/// Scenes in which `auto` leaves a constant environment to scattering and `all` samples it have the same mean: one
+/// percent of difference would be seen.
+#[test]
+fn both_estimators_have_the_same_mean() {
+    let mut open = Builder::default();
+    let grey = open.lambert(0.6, 0.6, 0.6);
+    open.quad([-2.0, 0.0, -2.0], [0.0, 0.0, 4.0], [4.0, 0.0, 0.0], grey);
+    open.sphere([0.0, 0.6, 0.0], 0.6, 12, false, grey);
+    open.environment(Rgb::splat(1.0));
+    for (name, world, shot) in [
+        ("open", open.build(), Shot::new([0.0, 1.5, 4.0], [0.0, 0.4, 0.0], 35.0, [24, 18], 16)),
+        ("table", table().build(), Shot { spp: 16, size: [24, 18], ..table_shot() }),
+    ] {
+        let [auto, all] = ["auto", "all"].map(|effects| shot.with_effects(effects));
+        assert_ne!(auto.plan(&world).1.lights.is_empty(), name == "table", "{name}");
+        let of = |shot: &Shot, seed| luminance(&Shot { seed, ..shot.clone() }.render(&world));
+        let seeds = if name == "open" { 24 } else { 400 };
+        let pairs: Vec<[f64; 2]> =
+            (0..seeds).map(|seed| [of(&auto, seed), of(&all, seed)]).collect();
+        assert_difference(name, &pairs, 0.01);
     }
 }
 

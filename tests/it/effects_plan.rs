@@ -57,8 +57,7 @@ fn reasons_name_the_line() {
         ("refraction", Some(("scene.toml", 10))),
         ("absorption", Some(("scene.toml", 10))),
         ("direct light of points", Some(("scene.toml", 13))),
-        ("direct light of directions", Some(("scene.toml", 19))),
-        ("direct light of surroundings", Some(("scene.toml", 22))),
+        ("direct light around", Some(("scene.toml", 22))),
         ("direct light of suns", Some(("scene.toml", 22))),
         ("instancing", None),
         ("caustics", Some(("scene.toml", 10))),
@@ -69,7 +68,7 @@ fn reasons_name_the_line() {
         assert_eq!(source(row), place, "{effect}: {}", row.reason);
     }
     assert!(row(&rows, "direct light of points").reason.contains("hard shadows"));
-    assert!(row(&rows, "direct light of suns").reason.contains("soft shadows"));
+    assert!(row(&rows, "direct light of suns").reason.contains("hard and soft shadows"));
     for effect in ["emission", "glossy", "textures", "normal-maps", "cut-outs"] {
         assert!(!row(&rows, effect).on, "{effect}");
     }
@@ -101,7 +100,7 @@ fn a_constant_environment_is_left_to_scattering() {
     let auto = rows(&scene, "auto");
     assert!(!row(&auto, "light-sampling").on && !row(&auto, "shadows").on);
     assert!(row(&auto, "light-sampling").reason.contains("scattering alone"));
-    assert!(row(&auto, "direct light of surroundings").on);
+    assert!(row(&auto, "direct light around").on);
     // Without scattering to find it, it is sampled.
     let alone = rows(&scene, "no-scatter-sampling");
     assert!(row(&alone, "light-sampling").on && row(&alone, "shadows").on);

@@ -14,6 +14,7 @@ mod camera;
 mod cli;
 mod cli_input;
 mod cli_options;
+mod cli_plan;
 mod cli_signals;
 mod closed_forms;
 mod cut_outs;

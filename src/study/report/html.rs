@@ -23,6 +23,8 @@ code { overflow-wrap: anywhere; } .better { color: light-dark(#0a7a3f, #5fd494);
 .charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(34rem, 1fr)); gap: 0 2rem; }
 svg { width: 100%; height: auto; font: 12px system-ui, sans-serif; } svg text { fill: var(--ink); }
 svg .soft { fill: var(--soft); } svg .whisker { stroke: var(--ink); stroke-width: 1.2; }
+.words th, .words td { text-align: left; vertical-align: top; } .legend span { display: inline-block; width: .8em; height: .8em;
+  margin: 0 .3em 0 .9em; } svg .in { fill: #111; }
 svg .embree { fill: light-dark(#9db8d8, #4d6c92); } svg .bvh { fill: light-dark(#e2963b, #d98a2b); }
 ";
 

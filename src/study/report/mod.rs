@@ -7,5 +7,8 @@ mod bars;
 mod bench;
 mod frames;
 mod html;
+mod render;
+mod stack;
 
 pub use bench::bench_page;
+pub use render::render_page;

@@ -23,7 +23,10 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("scene", "error math sampling image"),
     ("load", "error math sampling image os geometry bsdf filter scene"),
     ("accel", "error math ledger os geometry"),
-    ("world", "error math sampling image geometry texture bsdf light camera filter scene accel"),
+    (
+        "world",
+        "error math sampling image ledger geometry texture bsdf light camera filter scene accel",
+    ),
     ("plan", "error math sampling ledger light scene world"),
     (
         "trace",
