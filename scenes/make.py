@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 SCENES = ['shapes', 'cornell', 'glass', 'metals', 'room', 'depth-of-field', 'showcase', 'city', 'lanterns', 'furnace',
-          'instances']
+          'instances', 'effects']
 
 if __name__ == '__main__':
     sys.dont_write_bytecode = True

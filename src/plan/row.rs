@@ -4,7 +4,7 @@ use super::{Pipeline, Wishes};
 use crate::error::Location;
 use crate::ledger::{Class, Ledger, Stage};
 use crate::scene::{self, Effect, Style};
-use crate::world::{Census, Feature, LightSampler, Witness};
+use crate::world::{Census, Feature, Feature as F, LightSampler, Witness};
 
 /// One effect or strategy.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ pub(super) fn rows(
     };
     let staged = |effect, reason, stages| row(effect, reason, stages, Bill::Stages(stages));
     let classed = |effect, reason, stages, class| row(effect, reason, stages, Bill::Class(class));
-    use {Class as C, Feature as F};
+    use Class as C;
     vec![
         staged("emission", judge.emission(), &[Stage::Emit]),
         staged("environment", judge.environment(), &[Stage::Environment]),
@@ -192,6 +192,9 @@ impl Judge<'_> {
             };
             if self.pipeline.max_depth < 2 {
                 return off("nothing scatters it, or --max-depth 1");
+            }
+            if !self.census.has_any(&[F::Diffuse, F::Glossy, F::RoughRefraction]) {
+                return off("no rough surface to fall on: light is mirrored or refracted");
             }
             let is_hard = |f: &Feature| matches!(f, Feature::PointLight | Feature::Direction);
             let has = |hard| features.iter().any(|f| is_hard(f) == hard && self.census.has(*f));

@@ -12,6 +12,7 @@ use glint::ledger::Stage;
 use glint::math::Vec3;
 use glint::plan::{Pipeline, Plan};
 use glint::render::Rendered;
+use glint::scene::Projection;
 use glint::world::Details;
 
 const SMALL: Small = Small { size: [32, 18], spp: 4, seed: 0 };
@@ -157,4 +158,59 @@ fn stages_add_up_to_the_time_of_the_workers() {
         let covered = ledger.seconds() / ledger.worker_seconds;
         assert!((0.95..=1.0).contains(&covered), "{covered} of the time is in stages");
     }
+}
+
+/// The scene file of this name.
+fn scene(name: &str) -> FileScene {
+    let path = paths().into_iter().find(|path| path.ends_with(name)).expect("a scene");
+    FileScene::load(&path)
+}
+
+#[test]
+fn looks_that_are_left_out_are_gone_whatever_else_runs() {
+    let room = scene("room.toml");
+    let rendered = |effects: &str| {
+        let (world, plan) = room.plan(effects);
+        room.render(&world, &plan, Backend::Embree, SMALL)
+    };
+    let whole = rendered("auto");
+    for (left_out, stages, asks_filters) in [
+        ("no-textures", &[Stage::Textures][..], true),
+        ("no-normal-maps", &[], true),
+        ("no-textures,no-normal-maps", &[Stage::Textures, Stage::Details], true),
+        ("no-cut-outs", &[], false),
+    ] {
+        let auto = rendered(&format!("auto,{left_out}"));
+        assert!(auto.film != whole.film, "{left_out} changes nothing");
+        assert!(auto.film == rendered(&format!("all,{left_out}")).film, "{left_out}: auto, all");
+        for &stage in stages {
+            // What looks nothing up any more is not told apart any more.
+            let items = auto.ledger.stage(stage).items;
+            let before = whole.ledger.stage(stage).items;
+            assert!(items < before, "{left_out}: {items} of {before} in {}", stage.name());
+        }
+        assert_eq!(auto.ledger.cut_outs.calls > 0, asks_filters, "{left_out}");
+    }
+    // Mean colours keep the light roughly as it was.
+    let ratio = mean_luminance(&rendered("no-textures").film) / mean_luminance(&whole.film);
+    assert!((0.7..1.4).contains(&ratio), "{ratio} of the light without textures");
+}
+
+#[test]
+fn without_depth_of_field_the_lens_is_a_pinhole() {
+    let mut chess = scene("chess.toml");
+    let without = |scene: &FileScene, effects: &str| {
+        let (world, plan) = scene.plan(effects);
+        scene.render(&world, &plan, Backend::Embree, SMALL).film
+    };
+    let (lens, left_out) = (without(&chess, "auto"), without(&chess, "no-depth-of-field"));
+    assert!(lens != left_out);
+    let Projection::ThinLens { vertical_fov, .. } = chess.cameras[0].projection else {
+        panic!("the camera of the chess board has a lens");
+    };
+    chess.cameras[0].projection = Projection::Perspective { vertical_fov };
+    let (pinhole, left_out) = (without(&chess, "auto").develop(), left_out.develop());
+    // The same rays but for the rounding of where they start.
+    let differing = pinhole.differing(&left_out).len();
+    assert!(differing * 10 < pinhole.radiance.len(), "{differing} pixels differ");
 }
