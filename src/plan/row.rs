@@ -30,6 +30,9 @@ enum Bill {
     Class(Class),
     /// Whole stages.
     Stages(&'static [Stage]),
+    /// Stages that do for some surfaces what others do for the rest, and more; where everything runs, they do it for
+    /// all, so that what would be spared cannot be told.
+    Instead(&'static [Stage]),
     /// Hit filters.
     CutOuts,
     /// Nothing that can be told from the rest.
@@ -40,9 +43,11 @@ impl Row {
     /// The worker seconds that a ledger has for it, where they can be told from the rest. Rows are views of one sum:
     /// a shadow ray is in its light's and in the one of shadows.
     pub fn seconds(&self, ledger: &Ledger) -> Option<f64> {
+        let of = |stages: &[Stage]| stages.iter().map(|&s| ledger.stage(s).seconds).sum();
         match self.bill {
             Bill::Class(class) => Some(ledger.class_seconds(class)),
-            Bill::Stages(stages) => Some(stages.iter().map(|&s| ledger.stage(s).seconds).sum()),
+            Bill::Stages(stages) => Some(of(stages)),
+            Bill::Instead(stages) => self.on.then(|| of(stages)),
             Bill::CutOuts => Some(ledger.cut_outs.seconds),
             Bill::None => None,
         }
@@ -68,6 +73,7 @@ pub(super) fn rows(
         let (on, reason, source) = reason;
         Row { effect, on, reason, source, stages, bill }
     };
+    let instead = |effect, reason, stages| row(effect, reason, stages, Bill::Instead(stages));
     let staged = |effect, reason, stages| row(effect, reason, stages, Bill::Stages(stages));
     let classed = |effect, reason, stages, class| row(effect, reason, stages, Bill::Class(class));
     use Class as C;
@@ -85,8 +91,8 @@ pub(super) fn rows(
         classed("refraction", judge.refraction(), scatter, C::Refraction),
         row("absorption", event(Effect::Absorption, F::Absorption), scatter, Bill::None),
         classed("caustics", judge.caustics(), scatter, C::Caustic),
-        staged("textures", event(Effect::Textures, F::Texture), &[Stage::Textures]),
-        staged("normal-maps", event(Effect::NormalMaps, F::NormalMap), &[Stage::Details]),
+        instead("textures", event(Effect::Textures, F::Texture), &[Stage::Textures]),
+        instead("normal-maps", event(Effect::NormalMaps, F::NormalMap), &[Stage::Details]),
         row("cut-outs", event(Effect::CutOuts, F::CutOut), &[Stage::Intersect], Bill::CutOuts),
         staged("depth-of-field", judge.depth_of_field(), &[Stage::Lens]),
         row("instancing", judge.instancing(), &[Stage::Intersect], Bill::None),
