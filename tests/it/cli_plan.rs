@@ -98,7 +98,7 @@ fn the_bill_is_in_the_statistics_and_on_the_page() {
     let reasons: Vec<&str> = unused.filter_map(|row| row["reason"].as_str()).collect();
     assert!(reasons.iter().all(|reason| !reason.contains("unused")), "{reasons:?}");
     let page = read("page.html");
-    for words in ["refraction", "scene.toml:16", "<svg", "direct, surfaces", "</html>"] {
+    for words in ["refraction", "scene.toml:16", "<svg", "emission seen", "</html>"] {
         assert!(page.contains(words), "no `{words}` on the page");
     }
     for words in ["effect", "refraction", "light", "noise"] {
