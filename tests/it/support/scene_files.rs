@@ -14,7 +14,6 @@ use glint::scene::{self, Effects};
 use glint::trace::{Tracer, Wavefront};
 use glint::world::World;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// A scene file, read.
 pub(crate) struct FileScene {
@@ -106,7 +105,7 @@ impl FileScene {
             }
             #[cfg(feature = "bvh")]
             Backend::Bvh => {
-                let bvh = glint::accel::bvh::Bvh::build(Arc::clone(&geometry), 2);
+                let bvh = glint::accel::bvh::Bvh::build(geometry, 2);
                 self.render_on(world, plan, &bvh.expect("it builds"), small)
             }
         }
