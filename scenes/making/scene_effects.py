@@ -62,6 +62,21 @@ newmtl trunk
 Kd 0.22 0.12 0.06
 """
 
+HILLS_MTL = """# Hills at dusk: they emit and reflect nothing.
+newmtl hills0
+Kd 0 0 0
+Ke 0.5 0.19 0.2
+newmtl hills1
+Kd 0 0 0
+Ke 0.26 0.085 0.17
+newmtl hills2
+Kd 0 0 0
+Ke 0.095 0.035 0.11
+newmtl hills3
+Kd 0 0 0
+Ke 0.02 0.012 0.04
+"""
+
 # From red by way of yellow and blue back to red.
 HUES = ((0.72, 0.1, 0.08), (0.8, 0.3, 0.05), (0.82, 0.58, 0.08), (0.25, 0.5, 0.14), (0.06, 0.42, 0.42), (0.1, 0.24, 0.56),
         (0.32, 0.14, 0.48), (0.62, 0.1, 0.3))
@@ -91,7 +106,7 @@ def still():
     cube = box((1.1, 1.1, 1.1), (0, 0.55, 0)).turn('y', 28).move(-1.5, 0, -0.45)
     cone = revolve([(0, 0), (0.64, 0), (0, 1.55)], 40).move(1.5, 0, -0.55)
     for name, mesh in (('cube', Mesh(cube.points, cube.faces)), ('cone', Mesh(cone.points, cone.faces, cone.normals)),
-                       ('ring', ring(0.37, 0.13, 36, 12).move(0.98, 0, 0.95))):
+                       ('ring', ring(0.37, 0.13, 32, 12).move(0.98, 0, 0.95))):
         obj.add(mesh, name, name)
     return obj
 
@@ -156,12 +171,12 @@ def solids():
         x, y, z = (math.fsum(points[k][axis] for k in faces[0]) for axis in range(3))
         mesh = apart.turn('y', math.degrees(math.atan2(z, x)))
         mesh = mesh.turn('z', -90 - math.degrees(math.atan2(y, math.hypot(x, z))))
-        size = (0.85, 0.62, 0.82, 0.8, 0.78)[i] / math.dist(points[0], (0, 0, 0))
+        size = (0.78, 0.56, 0.72, 0.66, 0.66)[i] / math.dist(points[0], (0, 0, 0))
         if i == 1:
             size *= math.sqrt(4 / 3)
         mesh = mesh.scale(size).turn('y', (20, 30, 10, 0, 40)[i])
-        a = math.radians(66 * (i - 2) / 2)
-        mesh = mesh.move(2.5 * math.sin(a), -min(p[1] for p in mesh.points), 1.35 - 1.7 * math.cos(a))
+        a = math.radians(33 * (i - 2))
+        mesh = mesh.move(2.75 * math.sin(a), -min(p[1] for p in mesh.points), 0.9 - 1.7 * math.cos(a))
         obj.add(mesh, name=('tetrahedron', 'cube', 'octahedron', 'dodecahedron', 'icosahedron')[i])
     return obj
 
@@ -189,18 +204,15 @@ def tree():
     return obj
 
 
-def ranges():
-    """Four ridges one behind the other, each an outline filled down to the ground; near ones are lower."""
-    meshes = []
-    for k, (z, base, rise) in enumerate(((-9, 2.9, 2.2), (-7, 2.0, 1.7), (-5, 1.15, 1.2), (-3, 0.55, 0.8))):
-        top = []
-        for i in range(61):
-            x = 14 * (i / 60 - 0.5)
-            top.append((x, base + rise * (png.fractal(x * (0.28 + 0.07 * k) + 20, 0.5, 64, 5, 40 + k) - 0.5) * 1.6, z))
-        low = [(x, -4, z) for x, _, _ in top]
+def hills():
+    """Four ridges one behind the other, each an outline filled down to below the ground."""
+    obj = Obj('hills, one behind the other', 'hills.mtl', digits=2)
+    for k, (z, base, rise) in enumerate(((-9, 1.9, 3.0), (-7, 0.9, 2.5), (-5, 0.2, 1.9), (-3, -0.25, 1.4))):
+        xs = [20 * (i / 60 - 0.5) for i in range(61)]
+        top = [(x, base + rise * (png.fractal(x * (0.22 + 0.07 * k) + 20, 0.5, 64, 5, 40 + k) - 0.5), z) for x in xs]
         faces = [(i, i + 1, 61 + i + 1, 61 + i) for i in range(60)]
-        meshes.append(Mesh(low + top, faces))
-    return meshes
+        obj.add(Mesh([(x, -4, z) for x in xs] + top, faces), f'hills{k}')
+    return obj
 
 
 def globe(u, v):
@@ -210,7 +222,7 @@ def globe(u, v):
     # Two slices of plane noise make one of space that closes around the globe.
     land = png.fractal(2.2 * x + 8, 2.2 * y + 2.2 * z + 8, 64, 4, 11) + png.fractal(2.2 * z + 8, 2.2 * y - 2.2 * x + 8, 64, 4, 12)
     ice = abs(y) + 0.16 * (land - 1)
-    if abs(24 * u - round(24 * u)) < 0.07 or abs(12 * v - round(12 * v)) < 0.07:
+    if abs(12 * u - round(12 * u)) < 0.03 or abs(6 * v - round(6 * v)) < 0.03:
         return (0.93, 0.9, 0.8)
     if ice > 0.93:
         return (0.93, 0.95, 0.97)
@@ -243,30 +255,31 @@ def sand(u, v):
     x, z = 8 * (u - 0.5), 8 * (0.5 - v)
     stones = ((-1.15, -0.6, 0.72), (0.95, -0.15, 0.5), (0.1, 0.95, 0.32))
     near = min(math.hypot(x - a, z - b) - r for a, b, r in stones)
-    way = near if near < 0.68 else x * 0.25 + z
-    wave = 0.5 + 0.5 * math.cos(2 * math.pi * way / 0.17)
-    return (0.94 * wave + 0.06 * png.noise(u * 96, v * 96, 96, 3),)
+    way = near if near < 0.75 else z
+    return (0.5 + 0.5 * math.cos(2 * math.pi * way / 0.25),)
 
 
 def lattice(u, v):
-    """A screen of eight-pointed stars: (grey, ..., alpha)."""
+    """A screen of eight-pointed stars, its holes in the alpha channel."""
     x, y = abs(2 * u - 1), abs(2 * v - 1)
-    star = max(min(max(x, y) / 0.62, 1), min((x + y) / 0.62 / math.sqrt(2), 1))
-    hole = min(max(x, y), (x + y) / math.sqrt(2)) < 0.62
-    corner = math.hypot(1 - x, 1 - y) < 0.24
-    del star
-    return (1.0, 1.0, 1.0, 0.0 if hole or corner else 1.0)
+    is_hole = min(max(x, y), (x + y) / math.sqrt(2)) < 0.62 or math.hypot(1 - x, 1 - y) < 0.24
+    return (1.0, 1.0, 1.0, 0.0 if is_hole else 1.0)
+
+
+def smooth(t):
+    """From 0 to 1 without a corner."""
+    t = max(0, min(1, t))
+    return t * t * (3 - 2 * t)
 
 
 def studio(u, v):
-    """Evening around a studio: a dim gradient, and three soft boxes with blurred edges."""
-    color = png.mix((0.10, 0.085, 0.08), (0.2, 0.24, 0.34), max(0, min(1, 3 * (v - 0.33))))
-    glow = math.exp(-(((v - 0.5) / 0.07) ** 2))
-    color = [c + glow * g for c, g in zip(color, (0.34, 0.2, 0.12))]
-    for left, right, low, high, light in ((0.06, 0.2, 0.6, 0.86, (9, 7.6, 6)), (0.72, 0.78, 0.52, 0.84, (4, 5.4, 8)),
-                                          (0.36, 0.64, 0.88, 0.96, (3, 3, 3))):
+    """Dusk around a studio: a glow above a dark floor, and three soft boxes with blurred edges."""
+    floor, glow, top = (0.035, 0.045, 0.06), (0.75, 0.36, 0.18), (0.1, 0.16, 0.3)
+    color = png.mix(png.mix(floor, glow, smooth((v - 0.36) / 0.13)), top, smooth((v - 0.5) / 0.22))
+    for left, right, low, high, light in ((0.08, 0.24, 0.58, 0.84, (13, 11, 8.5)), (0.74, 0.8, 0.5, 0.84, (3, 4.4, 7)),
+                                          (0.34, 0.66, 0.86, 0.95, (2.5, 2.5, 2.5))):
         inside = min(u - left, right - u, (v - low) / 2, (high - v) / 2) / 0.016
-        color = [c + b * max(0, min(1, inside)) for c, b in zip(color, light)]
+        color = [c + b * smooth(inside) for c, b in zip(color, light)]
     return color
 
 
@@ -278,9 +291,14 @@ def make(folder):
         obj.add(mesh)
         obj.write(folder / f'{name}.obj')
     obj = Obj('a ball with texture coordinates', 'ball.mtl', digits=3)
-    obj.add(sphere(32, 16), 'globe')
+    # The profile's length is pi: from pole to pole once.
+    whole = sphere(32, 16)
+    whole.uvs = [(u, v / math.pi) for u, v in whole.uvs]
+    obj.add(whole, 'globe')
     obj.write(folder / 'ball.obj')
     (folder / 'ball.mtl').write_text(BALL_MTL)
+    hills().write(folder / 'hills.obj')
+    (folder / 'hills.mtl').write_text(HILLS_MTL)
     solids().write(folder / 'solids.obj')
     (folder / 'solids.mtl').write_text(SOLIDS_MTL)
     obj, colors = dominoes()

@@ -6,7 +6,7 @@
 mod names;
 
 pub use names::unknown_name;
-pub(crate) use names::{advice, quoted};
+pub(crate) use names::{advice, named_set, quoted};
 
 use std::fmt;
 use std::path::{Path, PathBuf};

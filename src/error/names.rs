@@ -46,6 +46,30 @@ fn did_you_mean<'n>(name: &str, known: impl IntoIterator<Item = &'n str>) -> Opt
         .map(|best| best.1)
 }
 
+/// Declares a closed set whose members have names: the enum, `ALL` in the order of declaration, and `name`.
+macro_rules! named_set {
+    ($(#[$attribute:meta])* $set:ident { $($(#[doc = $doc:literal])* $member:ident = $name:literal,)* }) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum $set {
+            $($(#[doc = $doc])* $member,)*
+        }
+
+        impl $set {
+            /// Every member, in the order of tables.
+            pub const ALL: &'static [Self] = &[$(Self::$member,)*];
+
+            /// Its name for users, in tables and in JSON.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$member => $name,)*
+                }
+            }
+        }
+    };
+}
+pub(crate) use named_set;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,6 +6,8 @@
 //! contribution does not depend on which of the two found it. Of everything else that happened, what comes last in
 //! [`Class::ALL`] gives the class its name.
 
+use crate::error::named_set;
+
 /// What happened to a path between the camera and the light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Events(u8);
@@ -89,51 +91,35 @@ const CLASSES: [Option<Class>; 32] = {
     classes
 };
 
-macro_rules! classes {
-    ($($(#[doc = $doc:literal])* $class:ident = $name:literal,)*) => {
-        /// A class of contributions.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum Class {
-            $($(#[doc = $doc])* $class,)*
-        }
-
-        impl Class {
-            /// Every class; where several could name a path, the last one does.
-            pub const ALL: &'static [Self] = &[$(Self::$class,)*];
-            /// How many there are.
-            pub const COUNT: usize = Self::ALL.len();
-
-            /// Name in tables and JSON.
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$class => $name,)*
-                }
-            }
-        }
-    };
+named_set! {
+    /// A class of contributions; where several could name a path, the last one does.
+    Class {
+        /// Lights that the camera sees, the surroundings included.
+        Seen = "emission seen",
+        /// From a point or spot, by one reflection.
+        DirectPoint = "direct, points",
+        /// From a direction or a disc at infinity, by one reflection.
+        DirectSun = "direct, suns",
+        /// From an emissive surface, by one reflection.
+        DirectSurface = "direct, surfaces",
+        /// From the surroundings, by one reflection.
+        DirectEnvironment = "direct, environment",
+        /// By broad reflections only.
+        Diffuse = "diffuse",
+        /// By a rough reflection of another surface.
+        Glossy = "glossy",
+        /// By a mirror.
+        Mirror = "mirror",
+        /// Through a transparent surface.
+        Refraction = "refraction",
+        /// Thrown on a rough surface by a mirror or through a transparent one.
+        Caustic = "caustic",
+    }
 }
 
-classes! {
-    /// Lights that the camera sees, the surroundings included.
-    Seen = "emission seen",
-    /// From a point or spot, by one reflection.
-    DirectPoint = "direct, points",
-    /// From a direction or a disc at infinity, by one reflection.
-    DirectSun = "direct, suns",
-    /// From an emissive surface, by one reflection.
-    DirectSurface = "direct, surfaces",
-    /// From the surroundings, by one reflection.
-    DirectEnvironment = "direct, environment",
-    /// By broad reflections only.
-    Diffuse = "diffuse",
-    /// By a rough reflection of another surface.
-    Glossy = "glossy",
-    /// By a mirror.
-    Mirror = "mirror",
-    /// Through a transparent surface.
-    Refraction = "refraction",
-    /// Thrown on a rough surface by a mirror or through a transparent one.
-    Caustic = "caustic",
+impl Class {
+    /// How many there are.
+    pub const COUNT: usize = Self::ALL.len();
 }
 
 impl Default for Class {

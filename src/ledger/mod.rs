@@ -45,7 +45,7 @@ pub struct ClassRays {
 /// Totals of all stages, and of rays by class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger {
-    stages: [StageTotals; Stage::COUNT],
+    stages: [StageTotals; Stage::ALL.len()],
     classes: [ClassRays; Class::COUNT],
     /// What hit filters cost within the stages that trace rays.
     pub cut_outs: FeatureTotals,

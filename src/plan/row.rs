@@ -196,8 +196,8 @@ impl Judge<'_> {
                 Ok(found) => found,
                 Err(none) => return none,
             };
-            if self.pipeline.max_depth < 2 {
-                return off("nothing scatters it, or --max-depth 1");
+            if let Some(nothing) = self.ends_at_once() {
+                return nothing;
             }
             if !self.census.has_any(&[F::Diffuse, F::Glossy, F::RoughRefraction]) {
                 return off("no rough surface to fall on: light is mirrored or refracted");
@@ -209,14 +209,26 @@ impl Judge<'_> {
                 (true, false) => "hard",
                 (false, _) => "soft",
             };
-            (true, format!("{}: {shadows} shadows", found.1), found.2)
+            let how = match self.pipeline.light_sampling {
+                true => format!("{shadows} shadows"),
+                false => format!("{shadows} shadows, by scattered rays"),
+            };
+            (true, format!("{}: {how}", found.1), found.2)
+        })
+    }
+
+    /// Why paths end at the first surface, if they do.
+    fn ends_at_once(&self) -> Option<Reason> {
+        (self.pipeline.max_depth < 2).then(|| match self.wishes.max_depth {
+            0 | 1 => off("--max-depth 1"),
+            _ => off("no surface scatters light"),
         })
     }
 
     fn shadows(&self) -> Reason {
         self.with(Effect::Shadows, || match self.pipeline.light_sampling {
             true => on("lights are sampled: rays to them may be blocked"),
-            false => off("no light is sampled: no ray is sent to one"),
+            false => off("no ray is sent to a light: scattered ones meet what is in the way"),
         })
     }
 
@@ -284,8 +296,8 @@ impl Judge<'_> {
                 .collect();
                 return on(ways.join(", "));
             }
-            if self.pipeline.max_depth < 2 {
-                return off("nothing scatters light, or --max-depth 1");
+            if let Some(nothing) = self.ends_at_once() {
+                return nothing;
             }
             if self.lights.is_empty() && self.census.has(Feature::Constant) {
                 return off("a constant environment is found better by scattering alone");
@@ -300,7 +312,7 @@ impl Judge<'_> {
     fn light_choice(&self) -> Reason {
         match (self.pipeline.light_choice, self.pipeline.everything) {
             (true, true) => on("--effects all"),
-            (true, false) => on("there is more than one light"),
+            (true, false) => on(format!("one of {}", self.lights.choices())),
             (false, _) if !self.pipeline.light_sampling => off("no light is sampled"),
             (false, _) => off("one light is sampled"),
         }
@@ -310,6 +322,9 @@ impl Judge<'_> {
         self.with(Effect::ScatterSampling, || {
             if !self.pipeline.scatter_sampling {
                 return off("without shadows, only light sampling finds lights");
+            }
+            if let Some(nothing) = self.ends_at_once() {
+                return nothing;
             }
             match self.pipeline.emission || self.pipeline.environment {
                 true => on("rays can meet lights"),
@@ -324,6 +339,9 @@ impl Judge<'_> {
                 true => "--effects all",
                 false => "some lights are found in both ways",
             });
+        }
+        if let Some(nothing) = self.ends_at_once() {
+            return nothing;
         }
         off(if !self.pipeline.light_sampling {
             "scattering alone finds all light"

@@ -2,65 +2,46 @@
 //!
 //! What a scene calls for is found later; this is only what was said.
 
-use crate::error::unknown_name;
+use crate::error::{named_set, unknown_name};
 use std::fmt;
 use std::str::FromStr;
 
-macro_rules! effects {
-    ($($(#[doc = $doc:literal])* $effect:ident = $name:literal,)*) => {
-        /// An effect that a render can simulate or leave out. Where one is left out, the paths that need it are.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        pub enum Effect {
-            $($(#[doc = $doc])* $effect,)*
-        }
-
-        impl Effect {
-            /// Every effect, in the order of tables.
-            pub const ALL: &'static [Self] = &[$(Self::$effect,)*];
-
-            /// The name that users know it by.
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$effect => $name,)*
-                }
-            }
-        }
-    };
-}
-
-effects! {
-    /// Emissive surfaces, as the camera sees them.
-    Emission = "emission",
-    /// What surrounds the scene, as the camera sees it.
-    Environment = "environment",
-    /// Light that comes to what is seen straight from a light.
-    Direct = "direct",
-    /// Surfaces in the way of direct light.
-    Shadows = "shadows",
-    /// Light that diffuse surfaces throw on others.
-    Diffuse = "diffuse",
-    /// Rough reflections of other surfaces.
-    Glossy = "glossy",
-    /// Sharp reflections.
-    Mirror = "mirror",
-    /// Transmission, bent or straight, sharp or rough; with it, total internal reflection has two sides.
-    Refraction = "refraction",
-    /// What coloured glass and liquids keep of the light that runs through them.
-    Absorption = "absorption",
-    /// Light that mirrors and glass throw on rough surfaces.
-    Caustics = "caustics",
-    /// Images on surfaces; without them, their mean colours.
-    Textures = "textures",
-    /// Normal and bump maps.
-    NormalMaps = "normal-maps",
-    /// Parts of surfaces that are not there; without, surfaces are whole.
-    CutOuts = "cut-outs",
-    /// A lens in focus at one distance; without, a pinhole in its middle.
-    DepthOfField = "depth-of-field",
-    /// Rays sent to lights on purpose.
-    LightSampling = "light-sampling",
-    /// Lights met by rays that surfaces scatter.
-    ScatterSampling = "scatter-sampling",
+named_set! {
+    /// An effect that a render can simulate or leave out. Where one is left out, the paths that need it are.
+    Effect {
+        /// Emissive surfaces, as the camera sees them.
+        Emission = "emission",
+        /// What surrounds the scene, as the camera sees it.
+        Environment = "environment",
+        /// Light that comes to what is seen straight from a light.
+        Direct = "direct",
+        /// Surfaces in the way of direct light.
+        Shadows = "shadows",
+        /// Light that diffuse surfaces throw on others.
+        Diffuse = "diffuse",
+        /// Rough reflections of other surfaces.
+        Glossy = "glossy",
+        /// Sharp reflections.
+        Mirror = "mirror",
+        /// Transmission, bent or straight, sharp or rough; with it, total internal reflection has two sides.
+        Refraction = "refraction",
+        /// What coloured glass and liquids keep of the light that runs through them.
+        Absorption = "absorption",
+        /// Light that mirrors and glass throw on rough surfaces.
+        Caustics = "caustics",
+        /// Images on surfaces; without them, their mean colours.
+        Textures = "textures",
+        /// Normal and bump maps.
+        NormalMaps = "normal-maps",
+        /// Parts of surfaces that are not there; without, surfaces are whole.
+        CutOuts = "cut-outs",
+        /// A lens in focus at one distance; without, a pinhole in its middle.
+        DepthOfField = "depth-of-field",
+        /// Rays sent to lights on purpose.
+        LightSampling = "light-sampling",
+        /// Lights met by rays that surfaces scatter.
+        ScatterSampling = "scatter-sampling",
+    }
 }
 
 /// A set of effects.

@@ -8,7 +8,7 @@ use super::{RayKind, Tracer, Vertex, direct_class, power_heuristic};
 use crate::accel::Accelerator;
 use crate::bsdf::Scatter;
 use crate::geometry::Ray;
-use crate::ledger::Events;
+use crate::ledger::{Class, Events};
 use crate::math::Rgb;
 use crate::sampling::Dimension;
 
@@ -21,7 +21,7 @@ pub(super) struct LightStage<'a, 't, A> {
     pub(super) positions: &'a [[f32; 2]],
     pub(super) shadow_rays: &'a mut Batch<Ray>,
     /// Slot, what the light adds to it if it is visible, and in which class.
-    pub(super) shadow_gains: &'a mut Batch<(u32, u8, Rgb)>,
+    pub(super) shadow_gains: &'a mut Batch<(u32, Class, Rgb)>,
 }
 
 impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
@@ -68,7 +68,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
             };
             ray.id = self.tracer.ray_id(&path.sampler, bounce, RayKind::Shadow);
             self.shadow_rays.push_if(adds, ray);
-            self.shadow_gains.push_if(adds, (vertex.slot, class as u8, gain));
+            self.shadow_gains.push_if(adds, (vertex.slot, class, gain));
         }
     }
 }

@@ -51,7 +51,7 @@ pub struct Wavefront {
     pairs: Pairs,
     shadow_rays: Batch<Ray>,
     /// Slot, what the light adds to it if it is visible, and in which class.
-    shadow_gains: Batch<(u32, u8, Rgb)>,
+    shadow_gains: Batch<(u32, Class, Rgb)>,
     blocked: Box<[bool]>,
     /// Slots whose path has ended.
     pub(super) finished: Batch<u32>,
@@ -203,7 +203,7 @@ impl Wavefront {
         clock.lap(&mut self.ledger, Stage::SampleLights, self.vertices.len());
     }
 
-    /// Adds the light of every shadow ray that nothing blocks; without shadows, of every one.
+    /// Adds the light of every shadow ray that nothing blocks; without shadows, of every light, and no ray is traced.
     fn shadow<A: Accelerator, F: HitFilter>(
         &mut self,
         tracer: &Tracer<'_, A>,
@@ -214,15 +214,18 @@ impl Wavefront {
         if self.shadow_rays.is_empty() && !pipeline.everything {
             return;
         }
-        let blocked = &mut self.blocked[..self.shadow_rays.len()];
-        match pipeline.shadows {
-            true => tracer.accelerator.occluded(&self.shadow_rays, filter, blocked),
-            false => blocked.fill(false),
+        if !pipeline.shadows {
+            for &(slot, class, gain) in &*self.shadow_gains {
+                self.slots[slot as usize].add(gain, class, &mut self.parts[slot as usize]);
+            }
+            clock.charge(&mut self.ledger, Stage::SampleLights);
+            return;
         }
+        let blocked = &mut self.blocked[..self.shadow_rays.len()];
+        tracer.accelerator.occluded(&self.shadow_rays, filter, blocked);
         for (&(slot, class, gain), blocked) in self.shadow_gains.iter().zip(blocked) {
             // A select, not a branch: what is blocked is random.
             let gain = if *blocked { Rgb::BLACK } else { gain };
-            let class = Class::ALL[usize::from(class)];
             self.slots[slot as usize].add(gain, class, &mut self.parts[slot as usize]);
             self.ledger.count_shadow_ray(class);
         }

@@ -6,7 +6,6 @@
 use super::World;
 use crate::bsdf::Bsdf;
 use crate::error::Location;
-use crate::geometry::NONE;
 use crate::light::LightKind;
 use crate::scene::{ColorInput, Material, MaterialId, ScalarInput, Surface};
 
@@ -97,7 +96,7 @@ impl World {
                 LightKind::Point => (Feature::PointLight, "point light"),
                 LightKind::Spot => (Feature::PointLight, "spot light"),
                 LightKind::Direction => (Feature::Direction, "directional light"),
-                LightKind::Disc => (Feature::Sun, "sun"),
+                LightKind::Disc => (Feature::Sun, "directional light with a disc"),
                 LightKind::Constant => (Feature::Constant, "constant environment"),
                 LightKind::Image => (Feature::Image, "sky or image around the scene"),
                 LightKind::Surface => continue,
@@ -134,7 +133,6 @@ impl World {
         // The materials of an object count once it is placed with them.
         let mut has_own = vec![false; surfaces.objects.len()];
         for (placed, (material, _)) in self.geometry.instances.iter().zip(&surfaces.instances) {
-            debug_assert_ne!(placed.object, NONE);
             let object = placed.object as usize;
             match material {
                 Some(id) => shown[id.index()] |= !surfaces.objects[object].is_empty(),

@@ -70,6 +70,11 @@ impl LightSampler {
         self.selection.is_empty()
     }
 
+    /// How many lights can be chosen; each emissive triangle is one.
+    pub fn choices(&self) -> usize {
+        self.choices
+    }
+
     /// Whether [`LightSampler::sample`] depends on `select`: not where there is one light only.
     pub fn needs_choice(&self) -> bool {
         self.choices > 1
