@@ -10,7 +10,7 @@ use crate::accel::Accelerator;
 use crate::error::{Error, Result};
 use crate::film::Region;
 use crate::filter::FilterSampler;
-use crate::render::{RenderJob, Rendered, render, render_layers};
+use crate::render::{Bill, RenderJob, Rendered, render, render_layers};
 use crate::trace::{Tracer, Wavefront};
 use crate::world::World;
 use signal_hook::consts::TERM_SIGNALS;
@@ -104,6 +104,7 @@ fn finish<A: Accelerator>(job: &Job<'_>, accelerator: &A, mut phases: Phases) ->
 
     // The film to files.
     let start = Instant::now();
+    let bill = Bill::new(&rendered);
     let pixels = rendered.film.develop();
     let (files, exposure) = outputs.write(&Picture {
         settings,
@@ -111,11 +112,11 @@ fn finish<A: Accelerator>(job: &Job<'_>, accelerator: &A, mut phases: Phases) ->
         samples: rendered.film.samples().0 as f32,
         layers: layers.as_ref(),
         background: job.args.background,
-        metadata: report::metadata(job, &rendered),
+        metadata: report::metadata(job, &rendered, &bill),
     })?;
     phases.write = start.elapsed().as_secs_f64();
 
-    let statistics = Statistics::new(job, accelerator.build_stats(), &rendered, phases);
+    let statistics = Statistics::new(job, accelerator.build_stats(), &rendered, bill, phases);
     report::finished(job, &statistics, &rendered, &files, exposure)?;
     Ok(exit_code(job, world, &rendered))
 }

@@ -10,12 +10,12 @@ use super::select::Settings;
 use super::statistics::{Statistics, command};
 use super::{ledger_table, plan_table};
 use crate::error::{Error, Result, Warning};
-use crate::film::{ClassShare, Region};
+use crate::film::Region;
 use crate::geometry::PrimitiveId;
 use crate::image::{Attribute, write_whole};
 use crate::math::DVec3;
 use crate::os::Isa;
-use crate::render::{Forecast, Rendered};
+use crate::render::{Bill, ClassRow, Forecast, Rendered};
 use crate::scene::{self, Effect};
 use crate::study::report::render_page;
 use crate::trace::PixelSample;
@@ -128,7 +128,7 @@ pub(super) fn finished(
         let (low, high) = rendered.film.samples();
         say(args, &format!("interrupted: {low} to {high} samples a pixel"));
     }
-    say_all(args, &ledger_table::lines(rendered));
+    say_all(args, &ledger_table::lines(&statistics.ledger));
     say_all(args, &statistics.summary());
     for example in &rendered.non_finite.examples {
         let [x, y] = example.pixel;
@@ -162,7 +162,7 @@ pub(super) fn finished(
         let title = args.scene.display().to_string();
         let mut facts = vec![command()];
         facts.extend(statistics.summary());
-        let page = render_page(&title, &facts, &job.prepared.plan, rendered);
+        let page = render_page(&title, &facts, &job.prepared.plan, &statistics.ledger);
         write_whole(path, |file| file.write_all(page.as_bytes()))?;
     }
     if args.json {
@@ -172,18 +172,18 @@ pub(super) fn finished(
 }
 
 /// Reproducible facts for the image's header.
-pub(super) fn metadata(job: &Job<'_>, rendered: &Rendered) -> Vec<(&'static str, Attribute)> {
+pub(super) fn metadata(
+    job: &Job<'_>,
+    rendered: &Rendered,
+    bill: &Bill,
+) -> Vec<(&'static str, Attribute)> {
     let Prepared { settings, world, plan, fingerprint, .. } = job.prepared;
     let text = |value: String| Attribute::Text(value);
-    let share = |s: &ClassShare| {
-        format!(
-            "{}: {:.2} % energy, {:.2} % variance",
-            s.class.name(),
-            100.0 * s.energy,
-            100.0 * s.variance
-        )
+    let share = |row: &ClassRow| {
+        let [energy, variance] = [row.energy_share, row.variance_share].map(|s| 100.0 * s);
+        format!("{}: {energy:.2} % energy, {variance:.2} % variance", row.class)
     };
-    let shares: Vec<String> = rendered.classes.shares(&rendered.film).1.iter().map(share).collect();
+    let shares: Vec<String> = bill.classes.iter().map(share).collect();
     let named = |rows: Vec<&str>| if rows.is_empty() { "nothing".into() } else { rows.join(", ") };
     let simulated = plan.rows.iter().filter(|row| row.on).map(|row| row.effect).collect();
     let lacks = settings.effects.left_out().map(Effect::name).collect();

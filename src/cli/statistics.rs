@@ -5,11 +5,10 @@
 use super::plan;
 use super::render::Job;
 use crate::accel::BuildStats;
-use crate::film::{ClassShare, Film};
-use crate::ledger::{Class, Ledger, Stage};
+use crate::film::Film;
 use crate::os::peak_rss_bytes;
 use crate::plan::Row;
-use crate::render::{Forecast, Rendered};
+use crate::render::{Bill, Forecast, Rendered};
 use serde::Serialize;
 
 /// Wall-clock seconds of each phase.
@@ -48,7 +47,8 @@ pub(super) struct Statistics {
     /// Of the render alone.
     rays_per_second: f64,
     plan: Vec<PlanRow>,
-    ledger: Bill,
+    /// The bill, by stage and by class.
+    pub(super) ledger: Bill,
     /// Samples that were not finite and are not in the image.
     non_finite: u64,
     /// Hash of the settings and of the contents of every file read.
@@ -111,54 +111,17 @@ pub(super) struct PlanRow {
     predicted_share: Option<f64>,
 }
 
-/// What the render cost, and what for.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct Bill {
-    /// Seconds of all threads, in stages or not.
-    worker_seconds: f64,
-    /// Each stage of the wavefront, summed over threads.
-    stages: Vec<StageRow>,
-    /// The transport classes that brought any light or took any rays.
-    classes: Vec<ClassRow>,
-    /// Pixels whose light was told apart by class.
-    watched_pixels: usize,
-}
-
-/// One class of transport.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct ClassRow {
-    class: &'static str,
-    /// Its stages' seconds, by number of rays.
-    seconds: f64,
-    rays: u64,
-    energy_share: f64,
-    variance_share: f64,
-}
-
-/// One stage.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-struct StageRow {
-    stage: &'static str,
-    seconds: f64,
-    calls: u64,
-    rays: u64,
-    mean_batch: f64,
-}
-
 impl Statistics {
     pub(super) fn new(
         job: &Job<'_>,
         build: BuildStats,
         rendered: &Rendered,
+        bill: Bill,
         mut seconds: Phases,
     ) -> Self {
         let world = &job.prepared.world;
         seconds.total = seconds.load + seconds.build + seconds.render + seconds.write;
         let ledger = &rendered.ledger;
-        let (watched_pixels, shares) = rendered.classes.shares(&rendered.film);
         Self {
             version: env!("CARGO_PKG_VERSION"),
             command: command(),
@@ -196,12 +159,7 @@ impl Statistics {
             },
             rays_per_second: ledger.rays() as f64 / rendered.seconds.max(1e-9),
             plan: plan::rows(&job.prepared.plan, None),
-            ledger: Bill {
-                worker_seconds: ledger.worker_seconds,
-                stages: stage_rows(ledger),
-                classes: class_rows(rendered, &shares),
-                watched_pixels,
-            },
+            ledger: bill,
             non_finite: rendered.non_finite.count,
             fingerprint: job.prepared.fingerprint.clone(),
         }
@@ -245,36 +203,6 @@ impl PlanRow {
             predicted_share: forecast.and_then(|forecast| forecast.share(row)),
         }
     }
-}
-
-fn class_rows(rendered: &Rendered, shares: &[ClassShare]) -> Vec<ClassRow> {
-    let row = |&class: &Class| {
-        let rays = rendered.ledger.class_rays(class);
-        let share = shares.iter().find(|share| share.class == class);
-        let row = ClassRow {
-            class: class.name(),
-            seconds: rendered.ledger.class_seconds(class),
-            rays: rays.path + rays.shadow,
-            energy_share: share.map_or(0.0, |share| share.energy),
-            variance_share: share.map_or(0.0, |share| share.variance),
-        };
-        (row.rays > 0 || share.is_some()).then_some(row)
-    };
-    Class::ALL.iter().filter_map(row).collect()
-}
-
-fn stage_rows(ledger: &Ledger) -> Vec<StageRow> {
-    let row = |stage: Stage| {
-        let totals = ledger.stage(stage);
-        StageRow {
-            stage: stage.name(),
-            seconds: totals.seconds,
-            calls: totals.calls,
-            rays: totals.items,
-            mean_batch: totals.items as f64 / totals.calls.max(1) as f64,
-        }
-    };
-    Stage::ALL.iter().copied().map(row).collect()
 }
 
 /// The command line as it was typed.

@@ -20,12 +20,12 @@ pub struct Row {
     /// What runs for it, beyond what runs for every picture.
     pub stages: &'static [Stage],
     /// What it is billed for.
-    bill: Bill,
+    charge: Charge,
 }
 
 /// What of a ledger an effect is billed for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Bill {
+enum Charge {
     /// The rays of a class.
     Class(Class),
     /// Whole stages.
@@ -44,12 +44,12 @@ impl Row {
     /// a shadow ray is in its light's and in the one of shadows.
     pub fn seconds(&self, ledger: &Ledger) -> Option<f64> {
         let of = |stages: &[Stage]| stages.iter().map(|&s| ledger.stage(s).seconds).sum();
-        match self.bill {
-            Bill::Class(class) => Some(ledger.class_seconds(class)),
-            Bill::Stages(stages) => Some(of(stages)),
-            Bill::Instead(stages) => self.on.then(|| of(stages)),
-            Bill::CutOuts => Some(ledger.cut_outs.seconds),
-            Bill::None => None,
+        match self.charge {
+            Charge::Class(class) => Some(ledger.class_seconds(class)),
+            Charge::Stages(stages) => Some(of(stages)),
+            Charge::Instead(stages) => self.on.then(|| of(stages)),
+            Charge::CutOuts => Some(ledger.cut_outs.seconds),
+            Charge::None => None,
         }
     }
 }
@@ -69,13 +69,13 @@ pub(super) fn rows(
     let (lit, scatter) = (&[Stage::SampleLights, Stage::Shadow], &[Stage::Scatter]);
     let direct = |features| judge.direct(features);
     let event = |effect, feature| judge.event(effect, &[feature]);
-    let row = |effect, reason: Reason, stages, bill| {
+    let row = |effect, reason: Reason, stages, charge| {
         let (on, reason, source) = reason;
-        Row { effect, on, reason, source, stages, bill }
+        Row { effect, on, reason, source, stages, charge }
     };
-    let instead = |effect, reason, stages| row(effect, reason, stages, Bill::Instead(stages));
-    let staged = |effect, reason, stages| row(effect, reason, stages, Bill::Stages(stages));
-    let classed = |effect, reason, stages, class| row(effect, reason, stages, Bill::Class(class));
+    let instead = |effect, reason, stages| row(effect, reason, stages, Charge::Instead(stages));
+    let staged = |effect, reason, stages| row(effect, reason, stages, Charge::Stages(stages));
+    let classed = |effect, reason, stages, class| row(effect, reason, stages, Charge::Class(class));
     use Class as C;
     vec![
         staged("emission", judge.emission(), &[Stage::Emit]),
@@ -89,17 +89,22 @@ pub(super) fn rows(
         classed("glossy", event(Effect::Glossy, F::Glossy), scatter, C::Glossy),
         classed("mirror", event(Effect::Mirror, F::Mirror), scatter, C::Mirror),
         classed("refraction", judge.refraction(), scatter, C::Refraction),
-        row("absorption", event(Effect::Absorption, F::Absorption), scatter, Bill::None),
+        row("absorption", event(Effect::Absorption, F::Absorption), scatter, Charge::None),
         classed("caustics", judge.caustics(), scatter, C::Caustic),
         instead("textures", event(Effect::Textures, F::Texture), &[Stage::Textures]),
         instead("normal-maps", event(Effect::NormalMaps, F::NormalMap), &[Stage::Details]),
-        row("cut-outs", event(Effect::CutOuts, F::CutOut), &[Stage::Intersect], Bill::CutOuts),
+        row("cut-outs", event(Effect::CutOuts, F::CutOut), &[Stage::Intersect], Charge::CutOuts),
         staged("depth-of-field", judge.depth_of_field(), &[Stage::Lens]),
-        row("instancing", judge.instancing(), &[Stage::Intersect], Bill::None),
+        row("instancing", judge.instancing(), &[Stage::Intersect], Charge::None),
         staged("light-sampling", judge.light_sampling(), lit),
-        row("choice of lights by power", judge.light_choice(), &[Stage::SampleLights], Bill::None),
+        row(
+            "choice of lights by power",
+            judge.light_choice(),
+            &[Stage::SampleLights],
+            Charge::None,
+        ),
         staged("scatter-sampling", judge.scatter_sampling(), &[Stage::Emit, Stage::Environment]),
-        row("multiple importance sampling", judge.combination(), lit, Bill::None),
+        row("multiple importance sampling", judge.combination(), lit, Charge::None),
     ]
 }
 

@@ -4,10 +4,12 @@
 //! the number of threads nor the order of blocks changes a byte. The first pass is one sample a pixel
 //! over the whole image; later ones double. Prints nothing: progress is a callback.
 
+mod bill;
 mod forecast;
 mod layers;
 mod non_finite;
 
+pub use bill::{Bill, ClassRow, CutOutsRow, StageRow};
 pub use forecast::{FORECAST_SIZE, Forecast, forecast};
 pub use layers::{Aov, Layers, render_layers};
 pub use non_finite::{NonFinite, NonFiniteSample};

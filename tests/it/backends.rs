@@ -5,7 +5,8 @@
 
 #![cfg(all(feature = "embree", feature = "bvh"))]
 
-use crate::support::scenes::{Builder, Shot, cornell, cornell_shot, zoo, zoo_shot};
+use crate::support::scenes::{Builder, cornell, cornell_shot, zoo, zoo_shot};
+use crate::support::shot::Shot;
 use glint::accel::bvh::Bvh;
 use glint::accel::embree::EmbreeAccelerator;
 use glint::accel::{Accelerator, BuildStats, HitFilter};

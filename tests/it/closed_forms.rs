@@ -2,7 +2,8 @@
 
 #![cfg(feature = "embree")]
 
-use crate::support::scenes::{Builder, Shot, mean};
+use crate::support::scenes::{Builder, mean};
+use crate::support::shot::Shot;
 use crate::support::z_test::{assert_mean, assert_mean_power};
 use glint::film::Pixels;
 use glint::math::{DVec3, Rgb};

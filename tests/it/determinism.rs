@@ -3,7 +3,8 @@
 
 #![cfg(feature = "embree")]
 
-use crate::support::scenes::{Builder, Shot, cornell, cornell_shot, zoo, zoo_shot};
+use crate::support::scenes::{Builder, cornell, cornell_shot, zoo, zoo_shot};
+use crate::support::shot::Shot;
 use glint::film::Region;
 use glint::os::Isa;
 use glint::sampling::SamplerKind;

@@ -2,7 +2,8 @@
 
 #![cfg(feature = "embree")]
 
-use crate::support::scenes::{Builder, Shot, cornell, cornell_shot, zoo, zoo_shot};
+use crate::support::scenes::{Builder, cornell, cornell_shot, zoo, zoo_shot};
+use crate::support::shot::Shot;
 use crate::support::z_test::assert_difference;
 use glint::film::ClassShare;
 use glint::ledger::Class;

@@ -2,9 +2,8 @@
 
 use super::html::Html;
 use super::stack::{Part, Stack};
-use crate::ledger::{Class, Stage};
 use crate::plan::Plan;
-use crate::render::Rendered;
+use crate::render::{Bill, ClassRow};
 
 /// What shares mean.
 const NOTES: &str = "Time is that of all threads together. A class of transport has the time of its rays, by their number; \
@@ -13,74 +12,61 @@ const NOTES: &str = "Time is that of all threads together. A class of transport 
     cancels the noise of another class has less than none.";
 
 /// The page; `title` names the scene, `facts` are lines about the render.
-pub fn render_page(title: &str, facts: &[String], plan: &Plan, rendered: &Rendered) -> String {
+pub fn render_page(title: &str, facts: &[String], plan: &Plan, bill: &Bill) -> String {
     let mut html = Html::page("glint render");
     html.element("h2", &[], title);
     for fact in facts {
         html.element("p", &[("class", &"soft")], fact);
     }
-    bill(&mut html, rendered);
+    stacks(&mut html, bill);
     html.element("p", &[("class", &"soft")], NOTES);
     effects(&mut html, plan);
     html.finish()
 }
 
 /// Stacked bars, and the numbers in them.
-fn bill(html: &mut Html, rendered: &Rendered) {
-    let ledger = &rendered.ledger;
-    let whole = ledger.worker_seconds.max(1e-9);
-    let part = |name: &'static str, share: f64| Part { name, share };
-    let stages = Stage::ALL.iter().map(|&s| part(s.name(), ledger.stage(s).seconds / whole));
+fn stacks(html: &mut Html, bill: &Bill) {
+    let stack = |name: &str, parts| Stack { name: name.into(), parts };
+    let stages = bill.ran().map(|row| Part { name: row.stage, share: row.time_share });
     html.element("h3", &[], "Where the time goes");
-    let by_stage = Stack { name: "by stage".into(), parts: stages.collect() };
-    Stack::draw(html, &[by_stage]);
+    Stack::draw(html, &[stack("by stage", stages.collect())]);
 
-    let (pixels, shares) = rendered.classes.shares(&rendered.film);
-    let of = |class: Class| shares.iter().find(|share| share.class == class);
-    let classes = |share: &dyn Fn(Class) -> f64| -> Vec<Part> {
-        Class::ALL.iter().map(|&class| part(class.name(), share(class))).collect()
-    };
-    let stack = |name: &str, share: &dyn Fn(Class) -> f64| Stack {
-        name: name.into(),
-        parts: classes(share),
+    let parts = |share: &dyn Fn(&ClassRow) -> f64| -> Vec<Part> {
+        bill.classes.iter().map(|row| Part { name: row.class, share: share(row) }).collect()
     };
     html.element("h3", &[], "Who brings the light, and who the noise");
-    let time = |class| ledger.class_seconds(class) / whole;
-    let energy = |class| of(class).map_or(0.0, |share| share.energy);
-    let variance = |class| of(class).map_or(0.0, |share| share.variance);
-    let stacks = [stack("time", &time), stack("light", &energy), stack("noise", &variance)];
+    let stacks = [
+        stack("time", parts(&|row| row.time_share)),
+        stack("light", parts(&|row| row.energy_share)),
+        stack("noise", parts(&|row| row.variance_share)),
+    ];
     Stack::draw(html, &stacks);
     html.markup(
         "<table><tr><th>light</th><th>rays</th><th>time</th><th>light</th><th>noise</th></tr>\n",
     );
-    for &class in Class::ALL {
-        let rays = ledger.class_rays(class);
-        if rays.path + rays.shadow > 0 || of(class).is_some() {
-            html.markup("<tr>").element("td", &[], class.name());
-            html.element("td", &[], rays.path + rays.shadow);
-            for share in [time(class), energy(class), variance(class)] {
-                html.element("td", &[], format!("{:.1} %", 100.0 * share));
-            }
-            html.markup("</tr>\n");
+    for row in &bill.classes {
+        html.markup("<tr>").element("td", &[], row.class).element("td", &[], row.rays);
+        for share in [row.time_share, row.energy_share, row.variance_share] {
+            html.element("td", &[], percent(share));
         }
+        html.markup("</tr>\n");
     }
     html.markup("</table>\n");
-    html.element("p", &[("class", &"soft")], format!("light and noise: {pixels} pixels"));
+    let pixels = format!("light and noise: {} pixels", bill.watched_pixels);
+    html.element("p", &[("class", &"soft")], pixels);
     html.markup("<table><tr><th>stage</th><th>seconds</th><th>time</th><th>calls</th><th>ns a ray</th><th>mean batch</th></tr>\n");
-    for &stage in Stage::ALL {
-        let totals = ledger.stage(stage);
-        if totals.calls > 0 {
-            html.markup("<tr>").element("td", &[], stage.name());
-            html.element("td", &[], format!("{:.3}", totals.seconds));
-            html.element("td", &[], format!("{:.1} %", 100.0 * totals.seconds / whole));
-            html.element("td", &[], totals.calls);
-            let per_ray = 1e9 * totals.seconds / totals.items.max(1) as f64;
-            html.element("td", &[], format!("{per_ray:.1}"));
-            html.element("td", &[], format!("{:.0}", totals.items as f64 / totals.calls as f64));
-            html.markup("</tr>\n");
-        }
+    for row in bill.ran() {
+        html.markup("<tr>").element("td", &[], row.stage);
+        html.element("td", &[], format!("{:.3}", row.seconds));
+        html.element("td", &[], percent(row.time_share)).element("td", &[], row.calls);
+        html.element("td", &[], format!("{:.1}", row.nanoseconds_per_ray()));
+        html.element("td", &[], format!("{:.0}", row.mean_batch)).markup("</tr>\n");
     }
     html.markup("</table>\n");
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
 }
 
 /// The table of effects.

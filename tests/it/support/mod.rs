@@ -6,6 +6,7 @@ pub(crate) mod reference_obj;
 pub(crate) mod scene_files;
 pub(crate) mod scenes;
 pub(crate) mod schema;
+pub(crate) mod shot;
 pub(crate) mod z_test;
 
 /// How much more the thorough tier does than the quick one: `GLINT_FULL=1` and no other value, as in `x`.
