@@ -8,7 +8,7 @@ use super::Wishes;
 use crate::ledger::{Events, Stage};
 use crate::light::LightKind;
 use crate::scene::{Effect, Style};
-use crate::world::{Census, Details, Feature, LightSampler, World};
+use crate::world::{Census, Details, Feature, Finding, LightSampler, World};
 
 /// What the stages ask.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,11 +92,12 @@ impl Pipeline {
 
         // A constant environment is found by scattering at least as well: sampling it would choose among
         // directions that all are alike, half of them below the surface.
-        let is_wanted = |kind| {
-            let by_scattering = kind == LightKind::Constant && scatter_sampling && !everything;
-            allowed(Effect::LightSampling) && !by_scattering
+        let finding = |kind| match kind {
+            _ if !allowed(Effect::LightSampling) => Finding::Ignored,
+            LightKind::Constant if scatter_sampling && !everything => Finding::Scattered,
+            _ => Finding::Sampled,
         };
-        let lights = LightSampler::new(world, is_wanted);
+        let lights = LightSampler::new(world, finding);
         let is_used = max_depth > 1 && (allowed(Effect::Direct) || events != Events::NONE);
         let light_sampling = allowed(Effect::LightSampling)
             && (everything || !lights.is_empty() && is_rough && is_used);

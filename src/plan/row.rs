@@ -317,6 +317,11 @@ impl Judge<'_> {
     fn light_choice(&self) -> Reason {
         match (self.pipeline.light_choice, self.pipeline.everything) {
             (true, true) => on("--effects all"),
+            (true, false) if self.lights.idle() > 0.0 => on(format!(
+                "one of {}, or none at {:.0} % of the vertices: scattering finds what is around",
+                self.lights.choices(),
+                100.0 * self.lights.idle()
+            )),
             (true, false) => on(format!("one of {}", self.lights.choices())),
             (false, _) if !self.pipeline.light_sampling => off("no light is sampled"),
             (false, _) => off("one light is sampled"),

@@ -2,7 +2,9 @@
 //!
 //! Emissive triangles and all other lights share one alias table: picking one costs the same for one light and for a
 //! million. Kinds that are not to be sampled have weight 0: rays may still meet them, and then they count in full,
-//! since the density with which they are sampled is 0. Source: pbrt 4th ed., section 12.6.2 (power light sampler).
+//! since the density with which they are sampled is 0. Where such a kind lights the scene, sampling the rest at every
+//! vertex may not be worth its rays, so that no light at all is one of the choices. Source: pbrt 4th ed., section 12.6.2
+//! (power light sampler); the choice of none is measured in `benches/results/`.
 
 use super::World;
 use super::lights::Emitter;
@@ -15,12 +17,14 @@ use crate::scene::MaterialId;
 /// How lights are sampled.
 #[derive(Clone, Debug, Default)]
 pub struct LightSampler {
-    /// One entry a light, those without a surface first.
+    /// One entry a light, those without a surface first; then perhaps one for no light.
     selection: AliasTable,
     /// For each material: the density per area with which a point of its triangles is chosen; empty where none is.
     pdf_area: Vec<f32>,
     /// How many lights can be chosen.
     choices: usize,
+    /// Probability that none is.
+    idle: f32,
     /// Whether any of them can be met by a ray, too.
     has_extent: bool,
 }
@@ -43,26 +47,56 @@ pub struct LightToSample {
     pub is_delta: bool,
 }
 
+/// How the lights of a kind are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finding {
+    /// They are sampled.
+    Sampled,
+    /// Scattered rays find them well enough.
+    Scattered,
+    /// They are not looked for.
+    Ignored,
+}
+
+/// Of the weight of lights that are left to scattering, the part that the choice of no light gets.
+const IDLE_SHARE: f64 = 0.05;
+
+/// The most that it gets, as a multiple of the weight of all lights that are sampled: a light may matter more
+/// than its power says, as a lamp does in a closed room, so that a quarter of the vertices sample one whatever the
+/// powers are.
+const IDLE_LIMIT: f64 = 3.0;
+
 impl LightSampler {
-    /// Samples the lights of `world` whose kinds are wanted.
-    pub fn new(world: &World, is_wanted: impl Fn(LightKind) -> bool) -> Self {
+    /// Samples the lights of `world` as it says for their kinds.
+    pub fn new(world: &World, finding: impl Fn(LightKind) -> Finding) -> Self {
         let lights = &world.lights;
-        let weights: Vec<f64> = lights
-            .weights()
-            .enumerate()
-            .map(|(i, weight)| if is_wanted(lights.kind(i)) { weight } else { 0.0 })
-            .collect();
-        let total: f64 = weights.iter().sum();
+        let of = |wanted: Finding| -> Vec<f64> {
+            let weigh = |(i, weight)| if finding(lights.kind(i)) == wanted { weight } else { 0.0 };
+            lights.weights().enumerate().map(weigh).collect()
+        };
+        let mut weights = of(Finding::Sampled);
         let chosen = |&i: &usize| weights[i] > 0.0;
         let has_extent = (0..weights.len()).filter(chosen).any(|i| !lights.kind(i).is_delta());
+        let choices = (0..weights.len()).filter(chosen).count();
+
+        // The choice of no light.
+        let sampled: f64 = weights.iter().sum();
+        let scattered: f64 = of(Finding::Scattered).iter().sum();
+        let idle = (IDLE_SHARE * scattered).min(IDLE_LIMIT * sampled);
+        let total = sampled + idle;
+        if idle > 0.0 {
+            weights.push(idle);
+        }
+
         let density = |weight: f64| (weight / total) as f32;
         let finite = |pdf: f32| if pdf.is_finite() { pdf } else { 0.0 };
-        let pdf_area = match is_wanted(LightKind::Surface) && !lights.emitters.is_empty() {
+        let is_sampled = finding(LightKind::Surface) == Finding::Sampled;
+        let pdf_area = match is_sampled && !lights.emitters.is_empty() {
             true => lights.weights_per_area().map(density).map(finite).collect(),
             false => Vec::new(),
         };
-        let choices = (0..weights.len()).filter(chosen).count();
-        Self { selection: AliasTable::new(&weights), pdf_area, choices, has_extent }
+        let idle = if idle > 0.0 { density(idle) } else { 0.0 };
+        Self { selection: AliasTable::new(&weights), pdf_area, choices, idle, has_extent }
     }
 
     /// Whether there is nothing to sample.
@@ -75,9 +109,14 @@ impl LightSampler {
         self.choices
     }
 
-    /// Whether [`LightSampler::sample`] depends on `select`: not where there is one light only.
+    /// The probability that [`LightSampler::sample`] chooses none.
+    pub fn idle(&self) -> f32 {
+        self.idle
+    }
+
+    /// Whether [`LightSampler::sample`] depends on `select`: not where it always chooses the same light.
     pub fn needs_choice(&self) -> bool {
-        self.choices > 1
+        self.choices > 1 || self.idle > 0.0
     }
 
     /// Whether a light that is sampled can also be met by a scattered ray.
@@ -86,7 +125,7 @@ impl LightSampler {
     }
 
     /// Chooses a light by `select`, and a direction to it from `point` by `position`. `None` where the
-    /// chosen light sends nothing, and where there is no light.
+    /// chosen light sends nothing, and where none is chosen.
     #[inline(always)]
     pub fn sample(
         &self,
@@ -101,7 +140,7 @@ impl LightSampler {
         let (choice, probability) = self.selection.sample(select);
         let lights = &world.lights.lights;
         if choice >= lights.len() {
-            let emitter = &world.lights.emitters[choice - lights.len()];
+            let emitter = world.lights.emitters.get(choice - lights.len())?;
             return sample_emitter(world, emitter, point, probability, position);
         }
         let light = &lights[choice].0;

@@ -15,7 +15,7 @@ mod variant;
 pub use census::{Census, Feature, Witness};
 pub use cut_out::CutOuts;
 pub use interaction::{Details, SurfaceInteraction};
-pub use light_sampler::{LightSampler, LightToSample};
+pub use light_sampler::{Finding, LightSampler, LightToSample};
 pub use lights::Lights;
 
 use crate::camera::{Camera, View};

@@ -1,6 +1,7 @@
 //! The plan's table: what is on and off, why, and in which line of which file.
 
 use glint::load::load_scene;
+use glint::math::Vec3;
 use glint::plan::{Plan, Row, Wishes};
 use glint::scene::{Effect, Effects};
 use glint::world::World;
@@ -9,8 +10,8 @@ use std::path::Path;
 const TRIANGLE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl used\nf 1 2 3\n";
 const LIBRARY: &str = "newmtl used\nKd 0.5 0.5 0.5\n\nnewmtl unused\nillum 7\nNi 1.5\nKe 1 1 1\n";
 
-/// The rows of a scene file of this text, beside a model with a material that is used and one that is not.
-fn rows(scene: &str, effects: &str) -> Vec<Row> {
+/// The world and the plan of a scene file of this text, beside a model with a material that is used and one that is not.
+fn plan(scene: &str, effects: &str) -> (World, Plan) {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("a.obj", TRIANGLE);
@@ -22,7 +23,12 @@ fn rows(scene: &str, effects: &str) -> Vec<Row> {
     let whole = World::compile(scene).expect("it compiles");
     let world = whole.with_effects(&effects).expect("it has less");
     let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
-    Plan::new(&world, &whole.census(), &camera, &wishes).rows
+    let plan = Plan::new(&world, &whole.census(), &camera, &wishes);
+    (world, plan)
+}
+
+fn rows(scene: &str, effects: &str) -> Vec<Row> {
+    plan(scene, effects).1.rows
 }
 
 fn row<'r>(rows: &'r [Row], effect: &str) -> &'r Row {
@@ -104,6 +110,36 @@ fn a_constant_environment_is_left_to_scattering() {
     // Without scattering to find it, it is sampled.
     let alone = rows(&scene, "no-scatter-sampling");
     assert!(row(&alone, "light-sampling").on && row(&alone, "shadows").on);
+}
+
+/// A lamp of power 4 pi, alone or under a constant environment; the triangle's bounding sphere has radius 0.707, so that
+/// an environment of radiance 1 has a power of 2 pi^2.
+fn lamp(environment: &str) -> (World, Plan) {
+    let scene = format!(
+        "{CAMERA}[[object]]\nfile = 'a.obj'\n[[light.point]]\nposition = [0, 0, 2]\nintensity = 1\n\
+         {environment}"
+    );
+    plan(&scene, "auto")
+}
+
+#[test]
+fn lamps_beside_a_constant_environment_are_sampled_at_some_vertices() {
+    let under = |radiance: &str| lamp(&format!("[environment.constant]\nradiance = {radiance}\n"));
+    let (_, alone) = lamp("");
+    assert_eq!(alone.lights.idle(), 0.0);
+    assert!(!alone.pipeline.light_choice);
+    for (radiance, idle) in [("1", 0.0728), ("5", 0.2820), ("1e6", 0.75)] {
+        let (world, plan) = under(radiance);
+        assert!((plan.lights.idle() - idle).abs() < 0.001, "{radiance}: {}", plan.lights.idle());
+        assert!(plan.pipeline.light_choice, "{radiance}");
+        // As often as it says, and then with the density that it has.
+        let selects = (0..10_000).map(|i| (i as f32 + 0.5) / 10_000.0);
+        let sample = |select| plan.lights.sample(&world, Vec3::ZERO, select, [0.5; 2]);
+        let sampled: Vec<_> = selects.filter_map(sample).collect();
+        let rate = 1.0 - plan.lights.idle();
+        assert!((sampled.len() as f32 / 10_000.0 - rate).abs() < 0.001, "{}", sampled.len());
+        assert!(sampled.iter().all(|light| light.pdf_solid_angle == rate), "{:?}", sampled[0]);
+    }
 }
 
 #[test]
