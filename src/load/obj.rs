@@ -77,6 +77,7 @@ pub(super) fn load_model(
     Ok(LoadedModel {
         model: Model {
             name: path.display().to_string(),
+            location: None,
             meshes: meshes.into_iter().map(Arc::new).collect(),
         },
         materials,

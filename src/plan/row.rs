@@ -280,7 +280,10 @@ impl Judge<'_> {
 
     fn instancing(&self) -> Reason {
         match self.census.witness(Feature::Instancing) {
-            Some(witness) => on(format!("{} placements of models", witness.count)),
+            Some(witness) => {
+                let (n, first) = (witness.count, &witness.first);
+                (true, format!("{n} placements, the first of {first}"), witness.location.clone())
+            }
             None => off(nothing(Feature::Instancing)),
         }
     }

@@ -58,6 +58,8 @@ index!(
 pub struct Model {
     /// Name for messages, usually the path.
     pub name: String,
+    /// Where it is placed first, in the scene file.
+    pub location: Option<Location>,
     /// The meshes, each with its own material per triangle.
     pub meshes: Vec<Arc<MeshData>>,
 }

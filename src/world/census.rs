@@ -8,6 +8,8 @@ use crate::bsdf::Bsdf;
 use crate::error::Location;
 use crate::light::LightKind;
 use crate::scene::{ColorInput, Material, MaterialId, ScalarInput, Surface};
+use std::borrow::Cow;
+use std::path::Path;
 
 /// What a scene can call for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -113,12 +115,8 @@ impl World {
             }
         }
         for instance in &self.geometry.instances {
-            let name = || {
-                format!("a model of {} meshes", {
-                    self.geometry.objects[instance.object as usize].meshes.len()
-                })
-            };
-            census.add(Feature::Instancing, name, &None);
+            let (name, location) = &self.surfaces.models[instance.object as usize];
+            census.add(Feature::Instancing, || format!("model \"{}\"", file_name(name)), location);
         }
         census
     }
@@ -166,6 +164,11 @@ impl World {
             (Feature::CutOut, material.is_cut_out()),
         ]
     }
+}
+
+/// The last part of a path, or all of what is none.
+fn file_name(name: &str) -> Cow<'_, str> {
+    Path::new(name).file_name().map_or(name.into(), |last| last.to_string_lossy())
 }
 
 /// How a surface can scatter, wherever on it; what is doubtful is taken for possible.

@@ -19,7 +19,7 @@ pub use light_sampler::{Finding, LightSampler, LightToSample};
 pub use lights::Lights;
 
 use crate::camera::{Camera, View};
-use crate::error::{Error, Result, Warning};
+use crate::error::{Error, Location, Result, Warning};
 use crate::geometry::{Aabb, Geometry, NONE, PrimitiveId};
 use crate::math::DVec3;
 use crate::scene::{self, Environment, Material, MaterialId, Projection, Scene};
@@ -54,6 +54,8 @@ struct Surfaces {
     own: Vec<SurfaceMesh>,
     /// Attributes of the meshes of each of `geometry.objects`.
     objects: Vec<Vec<SurfaceMesh>>,
+    /// For each of `geometry.objects`: the model's name, and where it is placed first.
+    models: Vec<(String, Option<Location>)>,
     /// For each instance: its material override, and whether it mirrors.
     instances: Vec<(Option<MaterialId>, bool)>,
 }
@@ -94,6 +96,7 @@ impl World {
             surfaces: Arc::new(Surfaces {
                 own: placed.surfaces,
                 objects: placed.object_surfaces,
+                models: placed.models,
                 instances: placed.instances,
             }),
         };

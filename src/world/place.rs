@@ -3,6 +3,7 @@
 //! All of it in `f64`, rounded to `f32` once. Triangles that any placement shows with a cut-out material go
 //! to meshes of their own, so that hit filters are asked about those alone; the vertex buffers are shared.
 
+use crate::error::Location;
 use crate::geometry::{Buffer, Geometry, Instance, Object, TriangleMesh};
 use crate::math::{Affine, DAffine3, DVec3, Vec3};
 use crate::scene::{Material, MaterialId, MeshData, Model, Scene};
@@ -26,6 +27,8 @@ pub(super) struct Placed {
     pub(super) surfaces: Vec<SurfaceMesh>,
     pub(super) object_surfaces: Vec<Vec<SurfaceMesh>>,
     pub(super) instances: Vec<(Option<MaterialId>, bool)>,
+    /// Name and first placement of the model of each object.
+    pub(super) models: Vec<(String, Option<Location>)>,
 }
 
 /// How the placements of a model show it.
@@ -62,6 +65,7 @@ pub(super) fn place(scene: &Scene, materials: &[Material]) -> Placed {
         geometry: Geometry::default(),
         surfaces: Vec::new(),
         object_surfaces: Vec::new(),
+        models: Vec::new(),
         instances: Vec::new(),
     };
     let mut shown = vec![Shown::default(); scene.models.len()];
@@ -125,6 +129,7 @@ fn add_object(
         model.meshes.iter().flat_map(|mesh| bake(mesh, &to_object, None, &filtered)).unzip();
     placed.geometry.objects.push(Object { meshes });
     placed.object_surfaces.push(surfaces);
+    placed.models.push((model.name.clone(), model.location.clone()));
     (placed.geometry.objects.len() as u32 - 1, origin)
 }
 

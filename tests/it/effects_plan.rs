@@ -65,12 +65,12 @@ fn reasons_name_the_line() {
         ("direct light of points", Some(("scene.toml", 13))),
         ("direct light around", Some(("scene.toml", 22))),
         ("direct light of suns", Some(("scene.toml", 22))),
-        ("instancing", None),
+        ("instancing", Some(("scene.toml", 6))),
         ("caustics", Some(("scene.toml", 10))),
     ] {
         let row = row(&rows, effect);
         assert!(row.on, "{effect}: {}", row.reason);
-        let place = place.map(|(name, line)| (name.to_owned(), line));
+        let place = place.map(|(name, line): (&str, usize)| (name.to_owned(), line));
         assert_eq!(source(row), place, "{effect}: {}", row.reason);
     }
     assert!(row(&rows, "direct light of points").reason.contains("hard shadows"));

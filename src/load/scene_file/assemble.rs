@@ -57,20 +57,21 @@ pub(super) fn assemble(document: &Document, source: Source, options: LoadOptions
     let progress = Progress::of(files.keys().map(|file| source.resolve(file)), options.progress);
     let mut models: HashMap<&str, ModelId> = HashMap::new();
     for PlacedFile { file, world_from_object, material } in placed {
-        let file = file.get_ref().as_str();
+        let name = file.get_ref().as_str();
         let material_override = material.and_then(material_of);
-        let model = match models.get(file) {
+        let model = match models.get(name) {
             Some(&model) => model,
             None => {
                 // Where none of its own materials can be seen, what is seen first takes their place.
-                let instead = if files[file] { only } else { material_override };
+                let instead = if files[name] { only } else { material_override };
                 let materials = if instead.is_some() { Materials::Named } else { Materials::Read };
-                let loaded = load_model(&source.resolve(file), materials, &progress)?;
+                let mut loaded = load_model(&source.resolve(name), materials, &progress)?;
+                loaded.model.location = Some(source.location(&file.span()));
                 let model = builder.add_model(loaded, |name| {
                     let replacement = overrides.replacement(name);
                     instead.or_else(|| material_of(replacement?))
                 });
-                *models.entry(file).or_insert(model)
+                *models.entry(name).or_insert(model)
             }
         };
         builder.scene.placements.push(Placement { model, world_from_object, material_override });

@@ -41,7 +41,11 @@ impl Builder {
 
     /// Adds a mesh of triangles, placed as it is.
     pub(crate) fn mesh(&mut self, mesh: MeshData) -> ModelId {
-        self.scene.models.push(Model { name: "test".into(), meshes: vec![Arc::new(mesh)] });
+        self.scene.models.push(Model {
+            name: "test".into(),
+            location: None,
+            meshes: vec![Arc::new(mesh)],
+        });
         let model = ModelId(self.scene.models.len() as u32 - 1);
         self.place(model, DAffine3::IDENTITY);
         model
