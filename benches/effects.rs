@@ -39,7 +39,7 @@ impl Way {
     fn new(whole: &World, camera: &scene::Camera, effects: Effects) -> Result<Self> {
         let world = whole.with_effects(&effects)?;
         let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
-        let plan = Plan::new(&world, &whole.census(), camera, &wishes);
+        let plan = Plan::new(&world, camera, &wishes);
         let backend = Backend::build(world.geometry.clone(), 0)?;
         Ok(Self { world, plan, backend })
     }

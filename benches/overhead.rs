@@ -124,7 +124,7 @@ fn measure(path: &Path) -> Result<()> {
     };
     let effects = Effects::AUTO;
     let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
-    let plan = &Plan::new(&world, &world.census(), &camera, &wishes);
+    let plan = &Plan::new(&world, &camera, &wishes);
     let camera = world.camera(&camera, SIZE)?;
     let filter = FilterSampler::new(Filter::parse("blackman-harris")?);
     let job = |threads| RenderJob {

@@ -25,6 +25,12 @@ pub struct RoughDielectric {
     multiple_far: f32,
 }
 
+/// Whether the two sides differ by more than half vectors of transmissions drown in rounding with.
+#[inline]
+fn is_refractive(eta: f32) -> bool {
+    (eta - 1.0).abs() >= 1e-3
+}
+
 impl RoughDielectric {
     /// As [`super::Dielectric::new`], with perceptual `roughness` in [0, 1]. A thin sheet scatters what it
     /// transmits as widely as what it reflects. `None`: the interface is smooth, or its two sides differ so
@@ -39,8 +45,7 @@ impl RoughDielectric {
     ) -> Option<Self> {
         let ggx = Ggx::new(roughness, 0.0)?;
         let eta = relative_eta(eta_inside_over_outside, entering, thin);
-        // Nearer to 1, half vectors of transmissions drown in rounding.
-        if (eta - 1.0).abs() < 1e-3 {
+        if !is_refractive(eta) {
             return None;
         }
         let (multiple_near, multiple_far) = if thin {
@@ -52,6 +57,13 @@ impl RoughDielectric {
         };
         let transmittance = super::reflectance(transmittance);
         Some(Self { ggx, eta, transmittance, thin, multiple_near, multiple_far })
+    }
+
+    /// Whether rough glass of this refractive index is rough seen from either side.
+    pub fn is_refractive(eta_inside_over_outside: f32, thin: bool) -> bool {
+        [true, false]
+            .iter()
+            .all(|&side| is_refractive(relative_eta(eta_inside_over_outside, side, thin)))
     }
 
     /// K of a direction on either side.

@@ -35,13 +35,14 @@ pub(super) fn lines(bill: &Bill) -> Vec<String> {
         "light", "rays", "time", "light", "noise", bill.watched_pixels
     ));
     for row in &bill.classes {
+        let noise =
+            row.variance_share.map_or("-".into(), |share| format!("{:.1} %", 100.0 * share));
         lines.push(format!(
-            "  {:20}{:12} {:4.1} % {:5.1} % {:5.1} %",
+            "  {:20}{:12} {:4.1} % {:5.1} % {noise:>7}",
             row.class,
             row.rays,
             100.0 * row.time_share,
-            100.0 * row.energy_share,
-            100.0 * row.variance_share
+            100.0 * row.energy_share
         ));
     }
     lines

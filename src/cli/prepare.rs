@@ -65,7 +65,7 @@ impl Prepared {
         let (camera, description) = select::camera(args, &cameras, up, &whole, settings.size)?;
 
         // The effects that it calls for, and what runs for them.
-        let (world, plan) = settings.plan(&whole, &description, args.background.is_some())?;
+        let (world, plan) = settings.plan(&whole, &description)?;
         let overrides = (args.background, &args.override_material, environment, up);
         let described = format!("{settings:?} {description:?} {overrides:?}");
         let fingerprint = load::fingerprint(&inputs, &described)?;
@@ -92,7 +92,7 @@ impl Prepared {
     /// None that a user could cause.
     pub(super) fn everything(&self, size: [u32; 2]) -> Result<(World, Plan, Camera)> {
         let settings = Settings { effects: Effects::EVERYTHING, ..self.settings.clone() };
-        let (world, plan) = settings.plan(&self.whole, &self.description, false)?;
+        let (world, plan) = settings.plan(&self.whole, &self.description)?;
         let camera = self.world.camera(&self.description, size)?;
         Ok((world, plan, camera))
     }

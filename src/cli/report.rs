@@ -180,8 +180,9 @@ pub(super) fn metadata(
     let Prepared { settings, world, plan, fingerprint, .. } = job.prepared;
     let text = |value: String| Attribute::Text(value);
     let share = |row: &ClassRow| {
-        let [energy, variance] = [row.energy_share, row.variance_share].map(|s| 100.0 * s);
-        format!("{}: {energy:.2} % energy, {variance:.2} % variance", row.class)
+        let noise = |share| format!(", {:.2} % variance", 100.0 * share);
+        let noise = row.variance_share.map_or(String::new(), noise);
+        format!("{}: {:.2} % energy{noise}", row.class, 100.0 * row.energy_share)
     };
     let shares: Vec<String> = bill.classes.iter().map(share).collect();
     let named = |rows: Vec<&str>| if rows.is_empty() { "nothing".into() } else { rows.join(", ") };

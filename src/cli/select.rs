@@ -12,7 +12,7 @@ use crate::math::{DVec3, Rgb};
 use crate::plan::{Plan, Wishes};
 use crate::render::Aov;
 use crate::sampling::{Sampler, SamplerKind};
-use crate::scene::{self, Effects, Projection, Scene, SceneSettings, Style};
+use crate::scene::{self, Effects, Projection, Scene, SceneSettings};
 use crate::trace::Tracer;
 use crate::world::World;
 
@@ -24,6 +24,8 @@ pub(super) struct Settings {
     pub(super) samples_per_pixel: u64,
     pub(super) max_depth: u32,
     pub(super) effects: Effects,
+    /// The camera does not see the surroundings.
+    pub(super) hide_background: bool,
     pub(super) sampler: SamplerKind,
     pub(super) seed: u64,
     pub(super) filter: Filter,
@@ -48,6 +50,7 @@ impl Settings {
             samples_per_pixel: args.spp.or(file.samples_per_pixel).unwrap_or(128),
             max_depth: args.max_depth.or(file.max_depth).unwrap_or(u32::MAX),
             effects: args.effects.map_or_else(|| effects_in_file(file), Ok)?,
+            hide_background: args.background.is_some(),
             sampler: said(args.sampler, &file.sampler, &SamplerKind::ALL, "sampler")?,
             seed: args.seed.or(file.seed).unwrap_or(0),
             filter: args.filter.or(filter).unwrap_or_default(),
@@ -62,20 +65,10 @@ impl Settings {
     ///
     /// # Errors
     /// None that a user could cause.
-    pub(super) fn plan(
-        &self,
-        whole: &World,
-        camera: &scene::Camera,
-        hide_background: bool,
-    ) -> Result<(World, Plan)> {
-        let effects = self.effects;
+    pub(super) fn plan(&self, whole: &World, camera: &scene::Camera) -> Result<(World, Plan)> {
+        let Self { effects, max_depth, hide_background, .. } = *self;
         let world = whole.with_effects(&effects)?;
-        let census = match effects.style {
-            Style::AmbientOcclusion => world.census(),
-            Style::Auto | Style::All => whole.census(),
-        };
-        let wishes = Wishes { effects, max_depth: self.max_depth, hide_background };
-        let plan = Plan::new(&world, &census, camera, &wishes);
+        let plan = Plan::new(&world, camera, &Wishes { effects, max_depth, hide_background });
         Ok((world, plan))
     }
 

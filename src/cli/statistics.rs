@@ -234,7 +234,7 @@ mod tests {
         let written = std::fs::read_to_string(&path).unwrap_or_default();
         let written: serde_json::Value = serde_json::from_str(&written).unwrap_or_default();
         let advice = "type: GLINT_WRITE_SCHEMA=1 cargo test --lib the_schema";
-        assert_eq!(written, schema.to_value(), "{path} is out of date; {advice}");
+        assert!(written == schema.to_value(), "{path} is out of date; {advice}");
     }
 
     #[test]

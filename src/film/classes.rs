@@ -11,6 +11,9 @@ use crate::ledger::{Class, Watch};
 use crate::math::Rgb;
 use crate::sampling::REPLICATES;
 
+/// Relative variance of a pixel below which it is the rounding of means, and of nothing that was sampled.
+const NOISE_OF_ROUNDING: f64 = 1e-20;
+
 /// Sums of one watched pixel, by replicate, class and channel.
 type CellSums = [[[Fixed; 3]; Class::COUNT]; REPLICATES];
 
@@ -41,8 +44,8 @@ pub struct ClassShare {
     pub class: Class,
     /// Its part of the light.
     pub energy: f64,
-    /// Its part of the noise.
-    pub variance: f64,
+    /// Its part of the noise; `None` where there is none, or fewer than two replicates to tell it from.
+    pub variance: Option<f64>,
 }
 
 impl ClassFilm {
@@ -81,73 +84,76 @@ impl ClassFilm {
         let cells: Vec<CellMeans> = film.region.iter().zip(&film.sums).filter_map(of).collect();
         let mut energy = [0.0; Class::COUNT];
         for cell in &cells {
-            for (sum, mean) in energy.iter_mut().zip(cell.mean()) {
+            for (sum, mean) in energy.iter_mut().zip(cell.mean) {
                 *sum += luminance(mean);
             }
         }
-        let mut image_mean = 0.0;
-        for cell in &cells {
-            image_mean += cell.image().iter().sum::<f64>() / (3 * cells.len()) as f64;
-        }
+        let of_cell = |cell: &CellMeans| total(&cell.mean).iter().sum::<f64>();
+        let image_mean = cells.iter().map(of_cell).sum::<f64>() / (3 * cells.len()) as f64;
         let mut covariance = [0.0; Class::COUNT];
         for cell in &cells {
             cell.add_covariances(image_mean, &mut covariance);
         }
-        let share = |part: f64, all: f64| if all == 0.0 { 0.0 } else { part / all };
         let (light, noise): (f64, f64) = (energy.iter().sum(), covariance.iter().sum());
+        let is_noisy = noise > NOISE_OF_ROUNDING * cells.len() as f64;
         let none = [Fixed::default(); 3];
         let is_lit =
             |&&class: &&Class| self.cells.iter().flatten().any(|sums| sums[class as usize] != none);
         let of = |&class: &Class| ClassShare {
             class,
-            energy: share(energy[class as usize], light),
-            variance: share(covariance[class as usize], noise),
+            energy: if light == 0.0 { 0.0 } else { energy[class as usize] / light },
+            variance: is_noisy.then(|| covariance[class as usize] / noise),
         };
         (cells.len(), Class::ALL.iter().filter(is_lit).map(of).collect())
     }
 }
 
-/// Means of one pixel, for each replicate that has samples: by class and channel.
-struct CellMeans(Vec<[[f64; 3]; Class::COUNT]>);
+/// Means of one pixel, by class and channel.
+struct CellMeans {
+    /// Over all samples.
+    mean: [[f64; 3]; Class::COUNT],
+    /// For each replicate that has samples.
+    replicates: Vec<[[f64; 3]; Class::COUNT]>,
+}
 
 impl CellMeans {
     fn new(cell: &CellSums, pixel: &PixelSums) -> Self {
-        let of = |(k, sums): (usize, &[[Fixed; 3]; Class::COUNT])| {
-            let n = pixel.samples_of(k);
-            (n > 0).then(|| sums.map(|channels| channels.map(|sum| sum.to_f64() / n as f64)))
-        };
-        Self(cell.iter().enumerate().filter_map(of).collect())
-    }
-
-    /// Over the replicates, by class.
-    fn mean(&self) -> [[f64; 3]; Class::COUNT] {
-        let n = self.0.len().max(1) as f64;
+        let sums = cell.map(|classes| classes.map(|channels| channels.map(Fixed::to_f64)));
         let mut mean = [[0.0; 3]; Class::COUNT];
-        for replicate in &self.0 {
-            for (mean, value) in mean.as_flattened_mut().iter_mut().zip(replicate.as_flattened()) {
-                *mean += value / n;
+        let mut replicates = Vec::new();
+        let samples: u64 = (0..REPLICATES).map(|k| pixel.samples_of(k)).sum();
+        for (k, sums) in sums.iter().enumerate() {
+            let n = pixel.samples_of(k);
+            if n > 0 {
+                replicates.push(sums.map(|channels| channels.map(|sum| sum / n as f64)));
+            }
+            for (mean, sum) in mean.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
+                *mean += sum / samples.max(1) as f64;
             }
         }
-        mean
-    }
-
-    /// Over the replicates, of all classes together.
-    fn image(&self) -> [f64; 3] {
-        total(&self.mean())
+        Self { mean, replicates }
     }
 
     /// Adds the weighted covariance of each class with the image.
     fn add_covariances(&self, image_mean: f64, covariance: &mut [f64; Class::COUNT]) {
-        let (mean, image) = (self.mean(), self.image());
-        for replicate in &self.0 {
+        let n = self.replicates.len() as f64;
+        let mut middle = [[0.0; 3]; Class::COUNT];
+        for replicate in &self.replicates {
+            for (mean, value) in middle.as_flattened_mut().iter_mut().zip(replicate.as_flattened())
+            {
+                *mean += value / n;
+            }
+        }
+        let (image, image_middle) = (total(&self.mean), total(&middle));
+        for replicate in &self.replicates {
             let of_image = total(replicate);
             for c in 0..3 {
                 let floor = 0.1 * image_mean;
                 let denominator = image[c] * image[c] + floor * floor;
                 if denominator > 0.0 {
-                    let weight = (of_image[c] - image[c]) / denominator;
+                    let weight = (of_image[c] - image_middle[c]) / denominator;
                     for (k, covariance) in covariance.iter_mut().enumerate() {
-                        *covariance += (replicate[k][c] - mean[k][c]) * weight;
+                        *covariance += (replicate[k][c] - middle[k][c]) * weight;
                     }
                 }
             }
@@ -194,9 +200,25 @@ mod tests {
         let shares = shares(&steady.collect::<Vec<_>>());
         assert_eq!(shares.len(), 2);
         assert_eq!(shares[0].class, Class::DirectSun);
-        assert!((shares[0].energy - 0.75).abs() < 1e-12 && shares[0].variance.abs() < 1e-12);
+        assert!(
+            (shares[0].energy - 0.75).abs() < 1e-12 && shares[0].variance.unwrap().abs() < 1e-12
+        );
         assert!((shares[1].energy - 0.25).abs() < 1e-12);
-        assert!((shares[1].variance - 1.0).abs() < 1e-12);
+        assert!((shares[1].variance.unwrap() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn light_is_that_of_all_samples_whatever_their_number() {
+        // The fifth sample makes a replicate of two: means of replicates would weigh it half.
+        let samples = (0..10).map(|s| ((s / 5) as u32, s % 5, 1.0, ((s % 5) == 4) as u8 as f32));
+        let shares = shares(&samples.collect::<Vec<_>>());
+        assert!((shares[1].energy - 1.0 / 6.0).abs() < 1e-12, "{shares:?}");
+    }
+
+    #[test]
+    fn one_sample_says_nothing_of_noise() {
+        let shares = shares(&[(0, 0, 1.0, 0.0), (1, 0, 1.0, 2.0)]);
+        assert!(shares.iter().all(|share| share.variance.is_none()), "{shares:?}");
     }
 
     #[test]
@@ -205,7 +227,7 @@ mod tests {
         let values = [(0.0, 2.0), (2.0, 1.0), (0.0, 2.0), (2.0, 1.0)];
         let samples = (0..4).map(|s| (0, s, values[s as usize].0, values[s as usize].1));
         let shares = shares(&samples.collect::<Vec<_>>());
-        assert!((shares[0].variance - 2.0).abs() < 1e-12, "{shares:?}");
-        assert!((shares[1].variance + 1.0).abs() < 1e-12, "{shares:?}");
+        assert!((shares[0].variance.unwrap() - 2.0).abs() < 1e-12, "{shares:?}");
+        assert!((shares[1].variance.unwrap() + 1.0).abs() < 1e-12, "{shares:?}");
     }
 }

@@ -130,14 +130,15 @@ impl Image {
         }
     }
 
-    /// Replaces what no light can be: NaN by 0 and infinity by 65504, the largest number of the half
-    /// floats that it overflowed from. Returns the number of texels that had either.
-    pub fn replace_non_finite(&mut self) -> usize {
+    /// Replaces what no light and no surface can be: what is negative or NaN by 0, and infinity by 65504, the largest
+    /// number of the half floats that it overflowed from. Returns the number of texels that had any.
+    pub fn replace_impossible(&mut self) -> usize {
         const LARGEST_HALF: f32 = 65504.0;
         let repair = |channels: &mut [f32]| {
-            let broken = channels.iter().any(|c| !c.is_finite());
-            for c in channels.iter_mut().filter(|c| !c.is_finite()) {
-                *c = if c.is_nan() { 0.0 } else { LARGEST_HALF.copysign(*c) };
+            let is_possible = |c: f32| c >= 0.0 && c < f32::INFINITY;
+            let broken = channels.iter().any(|&c| !is_possible(c));
+            for c in channels.iter_mut().filter(|c| !is_possible(**c)) {
+                *c = if *c == f32::INFINITY { LARGEST_HALF } else { 0.0 };
             }
             usize::from(broken)
         };
@@ -209,13 +210,13 @@ mod tests {
     }
 
     #[test]
-    fn non_finite_texels_are_replaced_and_counted() {
+    fn impossible_texels_are_replaced_and_counted() {
         let (nan, inf) = (f32::NAN, f32::INFINITY);
         let texels = vec![Rgb::new(nan, 1.0, inf), Rgb::new(-2.0, -inf, 0.0), Rgb::WHITE];
         let mut image = Image::new(3, 1, Pixels::Float(texels), false).unwrap();
-        assert_eq!(image.replace_non_finite(), 2);
+        assert_eq!(image.replace_impossible(), 2);
         assert_eq!(image.texel(0, 0).0, Rgb::new(0.0, 1.0, 65504.0));
-        assert_eq!(image.texel(1, 0).0, Rgb::new(-2.0, -65504.0, 0.0));
-        assert_eq!(image.replace_non_finite(), 0);
+        assert_eq!(image.texel(1, 0).0, Rgb::BLACK);
+        assert_eq!(image.replace_impossible(), 0);
     }
 }

@@ -28,7 +28,7 @@ pub enum ColorSpace {
 }
 
 /// Reads the image file `path`. Texels of HDR and EXR files can be negative, NaN or infinite (see
-/// [`Image::replace_non_finite`]); of an EXR file the layer R, G, B (A) is read, or else Y, or else the first
+/// [`Image::replace_impossible`]); of an EXR file the layer R, G, B (A) is read, or else Y, or else the first
 /// layer that has R, G and B.
 ///
 /// # Errors

@@ -36,10 +36,10 @@ pub struct FeatureTotals {
 /// Rays of one class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClassRays {
-    /// From the camera and from surface to surface.
+    /// From the camera and from surface to surface; one that meets a light is in the class of that light.
     pub path: u64,
-    /// Towards lights.
-    pub shadow: u64,
+    /// Samples of lights: where shadows are cast, a ray each.
+    pub light: u64,
 }
 
 /// Totals of all stages, and of rays by class.
@@ -76,7 +76,7 @@ impl Ledger {
 
     /// Rays towards lights.
     pub fn shadow_rays(&self) -> u64 {
-        self.classes.iter().map(|rays| rays.shadow).sum()
+        self.stage(Stage::Shadow).items
     }
 
     /// All rays.
@@ -89,18 +89,23 @@ impl Ledger {
         self.stages.iter().map(|s| s.seconds).sum()
     }
 
+    /// Samples of lights.
+    pub fn light_samples(&self) -> u64 {
+        self.classes.iter().map(|rays| rays.light).sum()
+    }
+
     /// Worker seconds that the rays of a class took: its share, by number, of what rays of a path go through and of
-    /// what shadow rays go through. What happens once a path belongs to the light that is seen.
+    /// what samples of lights go through. What happens once a path belongs to the light that is seen.
     pub fn class_seconds(&self, class: Class) -> f64 {
         let rays = self.class_rays(class);
         let share = |own: u64, all: u64| own as f64 / all.max(1) as f64;
         let of_paths = share(rays.path, self.camera_rays() + self.bounce_rays());
-        let of_shadows = share(rays.shadow, self.shadow_rays());
+        let of_lights = share(rays.light, self.light_samples());
         let once = if class == Class::Seen { 1.0 } else { 0.0 };
         let seconds = |&stage: &Stage| {
             let share = match stage {
                 Stage::Generate | Stage::Lens | Stage::Accumulate => once,
-                Stage::SampleLights | Stage::Shadow => of_shadows,
+                Stage::SampleLights | Stage::Shadow => of_lights,
                 _ => of_paths,
             };
             share * self.stage(stage).seconds
@@ -114,10 +119,17 @@ impl Ledger {
         self.classes[class as usize].path += 1;
     }
 
-    /// Counts a ray towards a light.
+    /// Counts a ray in `class` that has been counted in `before`.
     #[inline]
-    pub fn count_shadow_ray(&mut self, class: Class) {
-        self.classes[class as usize].shadow += 1;
+    pub fn recount_path_ray(&mut self, before: Class, class: Class) {
+        self.classes[before as usize].path -= 1;
+        self.classes[class as usize].path += 1;
+    }
+
+    /// Counts a sample of a light.
+    #[inline]
+    pub fn count_light_sample(&mut self, class: Class) {
+        self.classes[class as usize].light += 1;
     }
 
     /// Adds another worker's totals.
@@ -129,7 +141,7 @@ impl Ledger {
         }
         for (mine, theirs) in self.classes.iter_mut().zip(other.classes) {
             mine.path += theirs.path;
-            mine.shadow += theirs.shadow;
+            mine.light += theirs.light;
         }
         self.cut_outs.calls += other.cut_outs.calls;
         self.cut_outs.seconds += other.cut_outs.seconds;

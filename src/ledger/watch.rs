@@ -4,8 +4,8 @@
 /// Which pixels of an image are watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Watch {
-    /// A cell is 2^`edge_log2` pixels wide and high: pixels are found by shifts, for every path.
-    edge_log2: u32,
+    /// A cell is 2^`size_log2` pixels wide and high: pixels are found by shifts, for every path.
+    size_log2: [u32; 2],
     /// Cells a row; 0 where no pixel is watched.
     columns: u32,
     /// Left and top of the first cell.
@@ -14,36 +14,42 @@ pub struct Watch {
 
 impl Watch {
     /// No pixel.
-    pub const NONE: Self = Self { edge_log2: 0, columns: 0, start: [0; 2] };
+    pub const NONE: Self = Self { size_log2: [0; 2], columns: 0, start: [0; 2] };
 
     /// At most `limit` pixels (at least 1) of the rectangle from `start` to `end`, as evenly as can be.
     pub fn new(start: [u32; 2], end: [u32; 2], limit: u64) -> Self {
         let [width, height] = [0, 1].map(|k| end[k].saturating_sub(start[k]));
-        let cells = |edge_log2: u32| {
-            let [columns, rows] = [width, height].map(|n| u64::from(n.div_ceil(1 << edge_log2)));
-            columns * rows
+        let count = |size_log2: [u32; 2]| {
+            [width.div_ceil(1 << size_log2[0]), height.div_ceil(1 << size_log2[1])]
         };
-        let mut edge_log2 = 0;
-        while cells(edge_log2) > limit.max(1) {
-            edge_log2 += 1;
+        let mut size_log2 = [0; 2];
+        loop {
+            let [columns, rows] = count(size_log2);
+            if u64::from(columns) * u64::from(rows) <= limit.max(1) {
+                return Self { size_log2, columns, start };
+            }
+            // Cells grow along their shorter edge, unless there is no second one to join.
+            let is_flat = size_log2[1] < size_log2[0];
+            let axis = if columns == 1 || is_flat && rows > 1 { 1 } else { 0 };
+            size_log2[axis] += 1;
         }
-        Self { edge_log2, columns: width.div_ceil(1 << edge_log2), start }
     }
 
     /// Number of cells of an image `height` pixels high.
     pub fn cells(&self, height: u32) -> usize {
-        self.columns as usize * height.div_ceil(1 << self.edge_log2) as usize
+        self.columns as usize * height.div_ceil(1 << self.size_log2[1]) as usize
     }
 
     /// The number of the cell whose pixel `pixel` is, if it is one's. A cell that the image cuts off may have none.
     #[inline]
     pub fn cell(&self, pixel: [u32; 2]) -> Option<u32> {
         let [x, y] = [0, 1].map(|k| pixel[k] - self.start[k]);
-        let cell = (y >> self.edge_log2) * self.columns + (x >> self.edge_log2);
+        let [wide, high] = self.size_log2;
+        let cell = (y >> high) * self.columns + (x >> wide);
         // A random place in the cell: a regular one could miss what is regular in the picture.
         let place = mix(cell);
-        let is_at = |n: u32, place: u32| (n ^ place) & ((1 << self.edge_log2) - 1) == 0;
-        (self.columns > 0 && is_at(x, place) && is_at(y, place >> 16)).then_some(cell)
+        let is_at = |n: u32, log2: u32, place: u32| (n ^ place) & ((1 << log2) - 1) == 0;
+        (self.columns > 0 && is_at(x, wide, place) && is_at(y, high, place >> 16)).then_some(cell)
     }
 }
 
@@ -75,6 +81,8 @@ mod tests {
         let cells = watched(&few, start, end);
         // 40 x 30 pixels in cells of 4: none is cut off on the right, half a row of cells below may be empty.
         assert!(cells.len() <= 80 && cells.len() >= 70, "{}", cells.len());
+        let narrow = Watch::new([0, 0], [1, 65536], 4096);
+        assert_eq!(watched(&narrow, [0, 0], [1, 65536]).len(), 4096);
         assert!(cells.iter().all(|&cell| (cell as usize) < few.cells(30)));
         let mut once = cells.clone();
         once.sort_unstable();

@@ -3,6 +3,7 @@
 //! The census says what the scene calls for, the user what is wanted. What neither needs is not scheduled. The
 //! rows of the table and what the stages ask are made of the same two, side by side; it renders nothing.
 
+mod judge;
 mod pipeline;
 mod row;
 
@@ -11,7 +12,7 @@ pub use row::Row;
 
 use crate::ledger::Stage;
 use crate::scene::{self, Effects};
-use crate::world::{Census, LightSampler, World};
+use crate::world::{LightSampler, World};
 
 /// What a user wants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,12 +37,12 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The plan for what `camera` sees of `world`, which is the one with `wishes.effects`; `census` is of the whole one, or
-    /// of the same.
-    pub fn new(world: &World, census: &Census, camera: &scene::Camera, wishes: &Wishes) -> Self {
+    /// The plan for what `camera` sees of `world`, which is the one with `wishes.effects`.
+    pub fn new(world: &World, camera: &scene::Camera, wishes: &Wishes) -> Self {
+        let census = world.census();
         let has_lens = camera.projection.has_lens();
-        let (pipeline, lights) = Pipeline::new(world, census, has_lens, wishes);
-        let rows = row::rows(&pipeline, &lights, census, camera, wishes);
+        let (pipeline, lights) = Pipeline::new(world, &census, has_lens, wishes);
+        let rows = row::rows(&pipeline, &lights, &census, camera, wishes);
         Self { pipeline, lights, rows }
     }
 

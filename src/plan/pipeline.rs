@@ -67,8 +67,6 @@ impl Pipeline {
         let is_rough = has(&[Feature::Diffuse, Feature::Glossy, Feature::RoughRefraction]);
         let is_sharp = has(&[Feature::Mirror, Feature::Refraction]);
 
-        // No surface scatters: nothing but the lights themselves is seen.
-        let max_depth = if is_rough || is_sharp { wishes.max_depth } else { 1 };
         let events = [
             (Effect::Diffuse, Events::DIFFUSE),
             (Effect::Glossy, Events::GLOSSY),
@@ -79,6 +77,11 @@ impl Pipeline {
         .into_iter()
         .filter(|(effect, _)| allowed(*effect))
         .fold(Events::NONE, |all, (_, event)| all.and(event));
+
+        // No surface scatters, or what it scatters is not wanted: nothing but the lights themselves is seen.
+        let is_followed = allowed(Effect::Direct) || events != Events::NONE;
+        let scatters = is_followed && (is_rough || is_sharp);
+        let max_depth = if scatters { wishes.max_depth } else { 1 };
 
         // Unshadowed light cannot be found by rays, which surfaces stop.
         let scatter_sampling = allowed(Effect::ScatterSampling) && allowed(Effect::Shadows);
@@ -98,9 +101,8 @@ impl Pipeline {
             _ => Finding::Sampled,
         };
         let lights = LightSampler::new(world, finding);
-        let is_used = max_depth > 1 && (allowed(Effect::Direct) || events != Events::NONE);
         let light_sampling = allowed(Effect::LightSampling)
-            && (everything || !lights.is_empty() && is_rough && is_used);
+            && (everything || !lights.is_empty() && is_rough && max_depth > 1);
         let has_images = allowed(Effect::Textures) && has(&[Feature::Texture])
             || allowed(Effect::NormalMaps) && has(&[Feature::NormalMap]);
         let pipeline = Self {

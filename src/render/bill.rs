@@ -3,7 +3,7 @@
 //! Tables, statistics and pages all show this one account; it is serialized under `ledger` in the JSON of `glint render`.
 
 use super::Rendered;
-use crate::ledger::{Class, Stage};
+use crate::ledger::{Class, ClassRays, Stage};
 use serde::Serialize;
 
 /// What a render cost, and what for.
@@ -66,8 +66,8 @@ pub struct ClassRow {
     pub rays: u64,
     /// Its part of the light.
     pub energy_share: f64,
-    /// Its part of the noise.
-    pub variance_share: f64,
+    /// Its part of the noise; `None` where there is none, or fewer than two samples a pixel.
+    pub variance_share: Option<f64>,
 }
 
 impl Bill {
@@ -87,19 +87,21 @@ impl Bill {
             }
         };
         let (watched_pixels, shares) = classes.shares(film);
+        let of_none = shares.iter().find_map(|share| share.variance).map(|_| 0.0);
         let class = |&class: &Class| {
-            let rays = ledger.class_rays(class);
+            let ClassRays { path, light } = ledger.class_rays(class);
+            let shadow = if ledger.shadow_rays() > 0 { light } else { 0 };
             let share = shares.iter().find(|share| share.class == class);
             let seconds = ledger.class_seconds(class);
             let row = ClassRow {
                 class: class.name(),
                 seconds,
                 time_share: time_share(seconds),
-                rays: rays.path + rays.shadow,
+                rays: path + shadow,
                 energy_share: share.map_or(0.0, |share| share.energy),
-                variance_share: share.map_or(0.0, |share| share.variance),
+                variance_share: share.map_or(of_none, |share| share.variance),
             };
-            (row.rays > 0 || share.is_some()).then_some(row)
+            (path + light > 0 || share.is_some()).then_some(row)
         };
         let cut_outs = ledger.cut_outs;
         Self {

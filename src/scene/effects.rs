@@ -137,6 +137,10 @@ impl Effects {
         .with(Effect::LightSampling)
         .with(Effect::ScatterSampling);
 
+    /// What every list begins with.
+    const FINDING_LIGHTS: [Effect; 3] =
+        [Effect::Shadows, Effect::LightSampling, Effect::ScatterSampling];
+
     /// The sets with a name. `path` is `auto`: a path tracer simulates whatever a scene calls for.
     pub const NAMED: [(&'static str, Self); 6] = [
         ("auto", Self::AUTO),
@@ -170,7 +174,8 @@ impl FromStr for Effects {
     type Err = String;
 
     /// `auto`, another named set or an effect, then effects to add and, after `no-`, to take out. An effect in the
-    /// first place starts from nothing but the two ways of finding lights; `no-` in the first place from `auto`.
+    /// first place starts from nothing but the two ways of finding lights, and shadows; `no-` in the first place from
+    /// `auto`.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut effects: Option<Self> = None;
         for word in text.split(',').map(str::trim) {
@@ -184,8 +189,8 @@ impl FromStr for Effects {
                     Self { allowed: EffectSet::ALL.without(effect), ..Self::AUTO }
                 }
                 (None, None, Some(effect)) => {
-                    let ways = [Effect::LightSampling, Effect::ScatterSampling];
-                    Self { allowed: EffectSet::of(&ways).with(effect), ..Self::AUTO }
+                    let allowed = EffectSet::of(&Self::FINDING_LIGHTS).with(effect);
+                    Self { allowed, ..Self::AUTO }
                 }
                 (Some(before), _, Some(effect)) => {
                     let allowed = match taken {

@@ -4,7 +4,7 @@
 use super::batch::Batch;
 use super::group::{Entry, GroupStage};
 use super::path::Path;
-use super::{RayKind, Tracer, Vertex, direct_class, power_heuristic};
+use super::{RayKind, Tracer, Vertex, direct_class, power_heuristic, transmittance};
 use crate::accel::Accelerator;
 use crate::bsdf::Scatter;
 use crate::geometry::Ray;
@@ -59,13 +59,21 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
                 true => 1.0,
                 false => power_heuristic(light.pdf_solid_angle, value.pdf_solid_angle),
             };
-            let gain =
+            let mut gain =
                 path.throughput * value.f_cos * light.radiance * (weight / light.pdf_solid_angle);
             let origin = vertex.at.origin_towards(light.direction);
             let mut ray = match light.end {
                 Some(end) => Ray::between(origin, end),
                 None => Ray::new(origin, light.direction),
             };
+            // What the medium absorbs on the way, as of a scattered ray: nothing of what comes from infinity.
+            if let (true, Some(end)) = (pipeline.absorption, light.end) {
+                let absorption = match wi.z < 0.0 {
+                    true => self.tracer.absorption_beyond(&vertex.at),
+                    false => path.absorption,
+                };
+                gain *= transmittance(absorption, (end - origin).length());
+            }
             ray.id = self.tracer.ray_id(&path.sampler, bounce, RayKind::Shadow);
             self.shadow_rays.push_if(adds, ray);
             self.shadow_gains.push_if(adds, (vertex.slot, class, gain));

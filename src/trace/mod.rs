@@ -25,7 +25,7 @@ use crate::filter::FilterSampler;
 use crate::geometry::PrimitiveId;
 use crate::ledger::{Class, Events, Watch};
 use crate::light::LightKind;
-use crate::math::{Rgb, Vec3};
+use crate::math::{Rgb, Vec3, fun};
 use crate::plan::Plan;
 use crate::sampling::{Dimension, PathSampler, Sampler};
 use crate::world::{SurfaceInteraction, World};
@@ -175,6 +175,15 @@ impl<'a, A> Tracer<'a, A> {
         Tracer { world, accelerator, camera, filter, sampler, plan }
     }
 
+    /// Absorption coefficient of what begins behind this surface: its medium where the path enters, and nothing where it
+    /// leaves.
+    #[inline]
+    fn absorption_beyond(&self, at: &SurfaceInteraction) -> Rgb {
+        let absorbs = at.entering && self.plan.pipeline.absorption;
+        let medium = absorbs.then(|| self.world.absorption(at.material)).flatten();
+        medium.unwrap_or(Rgb::BLACK)
+    }
+
     /// What hit filters know a ray by; 0 where no filter will ask.
     #[inline]
     fn ray_id(&self, numbers: &PathSampler, bounce: u32, kind: RayKind) -> u32 {
@@ -213,6 +222,15 @@ pub(crate) enum RayKind {
 /// Growth of the ray cone (radians) at a rough scattering: textures seen by scattered light are looked up
 /// in coarser levels, far below the width of the scattering lobe itself.
 const SCATTERED_SPREAD: f32 = 0.05;
+
+/// What a medium leaves of light on a way of this length (Beer-Lambert).
+#[inline]
+fn transmittance(absorption: Rgb, distance: f32) -> Rgb {
+    match absorption.is_black() {
+        true => Rgb::WHITE,
+        false => (absorption * -distance).map(fun::exp),
+    }
+}
 
 /// The power heuristic with exponent 2 (Veach 1997, section 9.2.4): the weight of a sample that its
 /// own strategy draws with density `own` and the other one with density `other`.

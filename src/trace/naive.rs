@@ -9,7 +9,7 @@ use crate::accel::{Accelerator, HitFilter};
 use crate::bsdf::{LobeKind, Scatter};
 use crate::geometry::{Hit, Ray};
 use crate::ledger::Events;
-use crate::math::{Rgb, fun};
+use crate::math::{Rgb, Vec3, fun};
 use crate::plan::Pipeline;
 use crate::sampling::{Dimension, PathSampler};
 
@@ -92,6 +92,13 @@ fn incoming<A: Accelerator, F: HitFilter>(
         return transmitted * radiance;
     }
 
+    // The medium behind the surface.
+    let inside = world.absorption(at.material).filter(|_| at.entering && pipeline.absorption);
+    let medium = |wi: Vec3| match wi.z < 0.0 {
+        true => inside.unwrap_or(Rgb::BLACK),
+        false => state.absorption,
+    };
+
     // Direct light.
     let bsdf = world.bsdf(&at);
     let wo = at.frame.local_from_world(-ray.direction);
@@ -118,7 +125,9 @@ fn incoming<A: Accelerator, F: HitFilter>(
                     true => 1.0,
                     false => power_heuristic(light.pdf_solid_angle, value.pdf_solid_angle),
                 };
-                radiance += value.f_cos * light.radiance * (weight / light.pdf_solid_angle);
+                let distance = light.end.map_or(0.0, |end| (end - origin).length());
+                let arrives = light.radiance * (medium(wi) * -distance).map(fun::exp);
+                radiance += value.f_cos * arrives * (weight / light.pdf_solid_angle);
             }
         }
     }
@@ -139,10 +148,7 @@ fn incoming<A: Accelerator, F: HitFilter>(
     if survival < 1.0 && numbers.one(Dimension::Roulette { bounce }) >= survival {
         return transmitted * radiance;
     }
-    let crossed = sample.wi.z < 0.0;
-    let inside = world.absorption(at.material).filter(|_| at.entering).unwrap_or(Rgb::BLACK);
-    let inside = if pipeline.absorption { inside } else { Rgb::BLACK };
-    let mut history = state.history;
+    let mut history = state.history.clone();
     history.push(sample.kind);
     let spread = if sample.is_delta { 0.0 } else { SCATTERED_SPREAD };
     let next = State {
@@ -152,7 +158,7 @@ fn incoming<A: Accelerator, F: HitFilter>(
         eta_scale,
         pdf: (!sample.is_delta).then_some(sample.pdf_solid_angle),
         cone: [state.cone[0], state.cone[1] + spread],
-        absorption: if crossed { inside } else { state.absorption },
+        absorption: medium(sample.wi),
     };
     let id = tracer.ray_id(numbers, bounce + 1, RayKind::Path);
     let ray = Ray { id, ..Ray::new(at.origin_towards(wi), wi) };

@@ -3,7 +3,7 @@
 use super::{CameraStart, ClassRadiance, direct_class, event_of};
 use crate::bsdf::LobeKind;
 use crate::geometry::{PrimitiveId, Ray};
-use crate::ledger::{Class, Events};
+use crate::ledger::{Class, Events, Ledger};
 use crate::light::LightKind;
 use crate::math::Rgb;
 use crate::plan::Pipeline;
@@ -30,7 +30,7 @@ pub(super) struct Path {
     pub(super) pending: Events,
     /// It may meet a light, and does not go on from where it meets a surface.
     pub(super) only_looks_for_lights: bool,
-    /// The class that its ray is counted in.
+    /// The class that its ray is counted in, unless it meets a light.
     pub(super) ray_class: Class,
     /// The cell whose light is told apart by class, or [`Path::UNWATCHED`].
     pub(super) cell: u32,
@@ -69,6 +69,13 @@ impl Path {
         }
     }
 
+    /// Its ray met a light whose light is in `class`: the last one that it meets there has the ray.
+    #[inline]
+    pub(super) fn met_light(&mut self, class: Class, ledger: &mut Ledger) {
+        ledger.recount_path_ray(self.ray_class, class);
+        self.ray_class = class;
+    }
+
     /// What has happened to it where it leaves its last vertex for another surface.
     #[inline]
     pub(super) fn confirmed(&self) -> Events {
@@ -92,6 +99,10 @@ impl Path {
 
         let is_allowed = after.are_within(pipeline.events);
         self.only_looks_for_lights = !is_allowed;
+        if !is_allowed {
+            let direct = if pipeline.emission { LightKind::Surface } else { LightKind::Constant };
+            self.ray_class = self.events.class().unwrap_or(direct_class(direct));
+        }
         let may_meet_light = pipeline.emission || pipeline.environment;
         let finds_lights = may_meet_light
             && (is_delta || pipeline.scatter_sampling)

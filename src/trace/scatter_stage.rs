@@ -7,7 +7,6 @@ use super::{RayKind, SCATTERED_SPREAD, Tracer, Vertex};
 use crate::accel::Accelerator;
 use crate::bsdf::Scatter;
 use crate::geometry::Ray;
-use crate::math::Rgb;
 use crate::sampling::Dimension;
 
 /// What the stage reads and writes.
@@ -66,9 +65,7 @@ fn scatter<M: Scatter, A: Accelerator>(
         return false;
     }
     if sample.wi.z < 0.0 {
-        let inside = tracer.world.absorption(vertex.at.material);
-        let keeps = vertex.at.entering && tracer.plan.pipeline.absorption;
-        path.absorption = inside.filter(|_| keeps).unwrap_or(Rgb::BLACK);
+        path.absorption = tracer.absorption_beyond(&vertex.at);
     }
     if !sample.is_delta {
         path.cone_spread += SCATTERED_SPREAD;

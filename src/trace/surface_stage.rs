@@ -3,12 +3,12 @@
 use super::group::Receiver;
 use super::path::Path;
 use super::wavefront::Wavefront;
-use super::{ClassRadiance, Tracer, Vertex, power_heuristic};
+use super::{ClassRadiance, Tracer, Vertex, power_heuristic, transmittance};
 use crate::accel::Accelerator;
 use crate::geometry::Hit;
-use crate::ledger::{Class, Clock, Stage};
+use crate::ledger::{Class, Clock, Ledger, Stage};
 use crate::light::LightKind;
-use crate::math::{Rgb, fun};
+use crate::math::Rgb;
 use crate::world::Details;
 
 impl Wavefront {
@@ -39,8 +39,9 @@ impl Wavefront {
             }
             let path = &mut self.slots[slot as usize];
             let seen = plan.lights.at_infinity(tracer.world, path.ray.direction);
-            for (kind, radiance, pdf) in seen {
+            for (kind, radiance, pdf) in seen.filter(|seen| !seen.1.is_black()) {
                 if let Some(class) = path.class_of_met(kind, &plan.pipeline) {
+                    path.met_light(class, &mut self.ledger);
                     let weight = match path.is_delta || !plan.pipeline.combination {
                         true => 1.0,
                         false => power_heuristic(path.pdf_solid_angle, pdf),
@@ -88,10 +89,7 @@ impl Wavefront {
     fn expand<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, i: u32, is_detailed: bool) {
         let (slot, hit): (u32, &Hit) = (self.active[i as usize], &self.hits[i as usize]);
         let path = &mut self.slots[slot as usize];
-        // What the medium absorbed on the way (Beer-Lambert).
-        if !path.absorption.is_black() {
-            path.throughput *= (path.absorption * -hit.t).map(fun::exp);
-        }
+        path.throughput *= transmittance(path.absorption, hit.t);
         if path.bounce == 0 {
             path.coverage = 1.0;
         }
@@ -112,7 +110,8 @@ impl Wavefront {
                 let emitted = tracer.world.emitted(&vertex.at);
                 if !emitted.is_black() {
                     let path = &mut slots[vertex.slot as usize];
-                    add_emission(tracer, path, vertex, emitted, &mut parts[vertex.slot as usize]);
+                    let parts = &mut parts[vertex.slot as usize];
+                    add_emission(tracer, path, vertex, emitted, parts, &mut self.ledger);
                 }
             }
         }
@@ -157,10 +156,12 @@ fn add_emission<A: Accelerator>(
     vertex: &Vertex,
     emitted: Rgb,
     parts: &mut ClassRadiance,
+    ledger: &mut Ledger,
 ) {
     let plan = tracer.plan;
     let class: Option<Class> = path.class_of_met(LightKind::Surface, &plan.pipeline);
     let Some(class) = class else { return };
+    path.met_light(class, ledger);
     let weight = if path.is_delta || !plan.pipeline.combination {
         1.0
     } else {

@@ -217,6 +217,7 @@ impl Wavefront {
         if !pipeline.shadows {
             for &(slot, class, gain) in &*self.shadow_gains {
                 self.slots[slot as usize].add(gain, class, &mut self.parts[slot as usize]);
+                self.ledger.count_light_sample(class);
             }
             clock.charge(&mut self.ledger, Stage::SampleLights);
             return;
@@ -227,7 +228,7 @@ impl Wavefront {
             // A select, not a branch: what is blocked is random.
             let gain = if *blocked { Rgb::BLACK } else { gain };
             self.slots[slot as usize].add(gain, class, &mut self.parts[slot as usize]);
-            self.ledger.count_shadow_ray(class);
+            self.ledger.count_light_sample(class);
         }
         clock.lap(&mut self.ledger, Stage::Shadow, self.shadow_rays.len());
     }

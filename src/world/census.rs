@@ -4,7 +4,7 @@
 //! nothing: that is the plan's.
 
 use super::World;
-use crate::bsdf::Bsdf;
+use crate::bsdf::{Bsdf, RoughDielectric};
 use crate::error::Location;
 use crate::light::LightKind;
 use crate::scene::{ColorInput, Material, MaterialId, ScalarInput, Surface};
@@ -184,18 +184,23 @@ struct Lobes {
 impl Lobes {
     fn of(surface: &Surface) -> Self {
         let is_lit = |input: &ColorInput| !input.value.is_black();
-        // A texture of roughness may be anything from smooth to its factor.
+        // A texture may make anything of a factor that is not 0: texels can be larger than 1.
         let smooth = |r: &ScalarInput| r.texture.is_some() || Bsdf::is_smooth(r.value);
-        let rough = |r: &ScalarInput| !Bsdf::is_smooth(r.value);
+        let rough = |r: &ScalarInput| match r.texture {
+            Some(_) => r.value > 0.0,
+            None => !Bsdf::is_smooth(r.value),
+        };
         let none = Self::default();
         match surface {
             Surface::Lambert { albedo } | Surface::OrenNayar { albedo, .. } => {
                 Self { diffuse: is_lit(albedo), ..none }
             }
             Surface::Mirror { reflectance } => Self { mirror: is_lit(reflectance), ..none },
-            Surface::Dielectric { roughness, transmittance, .. } => {
+            Surface::Dielectric { eta, roughness, transmittance, thin, .. } => {
                 let transmits = !transmittance.is_black();
-                let (mirror, glossy) = (smooth(roughness), rough(roughness));
+                // What hardly refracts is taken for smooth, however rough.
+                let mirror = smooth(roughness) || !RoughDielectric::is_refractive(*eta, *thin);
+                let glossy = rough(roughness);
                 let (refraction, rough_refraction) = (mirror & transmits, glossy & transmits);
                 Self { glossy, mirror, refraction, rough_refraction, ..none }
             }
@@ -218,13 +223,14 @@ impl Lobes {
                 sheen,
                 ..
             } => {
-                let is_metal = metallic.value > 0.0 && is_lit(base_color);
+                // Even a black metal reflects at grazing angles.
+                let is_metal = metallic.value > 0.0;
                 let reflects = is_lit(specular) || is_metal;
                 let coat = |is_so: bool| *clearcoat > 0.0 && is_so;
                 let is_coat_smooth = Bsdf::is_smooth(*clearcoat_roughness);
                 Self {
                     // Sheen and what is lost inside a rough metal are as broad as diffuse reflection.
-                    diffuse: is_lit(base_color) || *sheen > 0.0,
+                    diffuse: is_lit(base_color) || *sheen > 0.0 || is_metal && rough(roughness),
                     glossy: reflects && rough(roughness) || coat(!is_coat_smooth),
                     mirror: reflects && smooth(roughness) || coat(is_coat_smooth),
                     ..none

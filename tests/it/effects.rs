@@ -60,7 +60,7 @@ fn mean_luminance(film: &Film) -> f64 {
 fn auto_has_the_mean_of_all_where_it_samples_other_lights() {
     // A tenth of the light in the quick tier; a hundredth in the full one, and in the quick one for the scenes below.
     let (seeds, power) = match effort(0, 1) {
-        0 => (24, 0.12),
+        0 => (48, 0.12),
         _ => (2000, 0.01),
     };
     let mut compared = 0;

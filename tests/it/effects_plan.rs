@@ -23,7 +23,7 @@ fn plan(scene: &str, effects: &str) -> (World, Plan) {
     let whole = World::compile(scene).expect("it compiles");
     let world = whole.with_effects(&effects).expect("it has less");
     let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
-    let plan = Plan::new(&world, &whole.census(), &camera, &wishes);
+    let plan = Plan::new(&world, &camera, &wishes);
     (world, plan)
 }
 

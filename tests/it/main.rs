@@ -11,6 +11,7 @@ mod bsdf;
 mod bvh;
 mod bvh_packets;
 mod camera;
+mod census;
 mod cli;
 mod cli_input;
 mod cli_options;

@@ -35,7 +35,7 @@ impl FrameScene {
         let world = World::compile(scene)?;
         report::warnings(&said, &world.warnings);
         let (camera, description) = select::camera(&said, &cameras, up, &world, settings.size)?;
-        let (world, plan) = settings.plan(&world, &description, false)?;
+        let (world, plan) = settings.plan(&world, &description)?;
         Ok(Self { world, plan, camera, settings })
     }
 

@@ -75,10 +75,12 @@ impl Builder {
                 warn(format!("{error}; a stand-in colour is shown instead"));
                 Image::missing()
             });
-            let repaired = image.replace_non_finite();
+            let repaired = image.replace_impossible();
             if repaired > 0 {
                 let name = request.path.display();
-                warn(format!("{name}: {repaired} numbers that are NaN or infinite, taken as 0"));
+                warn(format!(
+                    "{name}: {repaired} texels that are negative, NaN (taken as 0) or infinite (as 65504)"
+                ));
             }
             scene.images.push(Arc::new(image));
             scene.inputs.push(request.path);

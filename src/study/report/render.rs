@@ -38,7 +38,7 @@ fn stacks(html: &mut Html, bill: &Bill) {
     let stacks = [
         stack("time", parts(&|row| row.time_share)),
         stack("light", parts(&|row| row.energy_share)),
-        stack("noise", parts(&|row| row.variance_share)),
+        stack("noise", parts(&|row| row.variance_share.unwrap_or(0.0))),
     ];
     Stack::draw(html, &stacks);
     html.markup(
@@ -46,9 +46,9 @@ fn stacks(html: &mut Html, bill: &Bill) {
     );
     for row in &bill.classes {
         html.markup("<tr>").element("td", &[], row.class).element("td", &[], row.rays);
-        for share in [row.time_share, row.energy_share, row.variance_share] {
-            html.element("td", &[], percent(share));
-        }
+        let [time, light] = [row.time_share, row.energy_share].map(percent);
+        let noise = row.variance_share.map_or("-".into(), percent);
+        html.element("td", &[], time).element("td", &[], light).element("td", &[], noise);
         html.markup("</tr>\n");
     }
     html.markup("</table>\n");

@@ -73,7 +73,7 @@ impl FileScene {
         let effects: Effects = effects.parse().expect("effects");
         let world = self.whole.with_effects(&effects).expect("a world with less in it");
         let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
-        let plan = Plan::new(&world, &self.whole.census(), &self.cameras[0], &wishes);
+        let plan = Plan::new(&world, &self.cameras[0], &wishes);
         (world, plan)
     }
 

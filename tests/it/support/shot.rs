@@ -12,7 +12,7 @@ use glint::math::{DVec3, Rgb};
 use glint::plan::{Plan, Wishes};
 use glint::render::{RenderJob, Rendered, render};
 use glint::sampling::{Sampler, SamplerKind};
-use glint::scene::{self, Effects, Projection, Style};
+use glint::scene::{self, Effects, Projection};
 use glint::trace::{Block, PixelSample, Tracer, Wavefront, naive};
 use glint::world::{CutOuts, World};
 
@@ -67,11 +67,7 @@ impl Shot {
         };
         let wishes =
             Wishes { effects: self.effects, max_depth: self.max_depth, hide_background: false };
-        let census = match self.effects.style {
-            Style::AmbientOcclusion => world.census(),
-            Style::Auto | Style::All => whole.census(),
-        };
-        let plan = Plan::new(&world, &census, &camera, &wishes);
+        let plan = Plan::new(&world, &camera, &wishes);
         (world, plan)
     }
 
