@@ -21,6 +21,7 @@ use crate::study::report::render_page;
 use crate::trace::PixelSample;
 use crate::world::World;
 use serde::Serialize;
+use std::borrow::Borrow;
 use std::io::Write;
 
 /// Writes a line to stderr; a closed stderr is nobody's error.
@@ -171,6 +172,22 @@ pub(super) fn finished(
     Ok(())
 }
 
+fn listed<S: Borrow<str>>(words: &[S]) -> String {
+    if words.is_empty() { "nothing".into() } else { words.join(", ") }
+}
+
+/// What of the scene a picture does not show, because a user took it out.
+fn lacks(settings: &Settings) -> Vec<String> {
+    let mut lacks: Vec<String> = settings.effects.left_out().map(|e| e.name().into()).collect();
+    if settings.hide_background && settings.effects.allowed.has(Effect::Environment) {
+        lacks.push("environment behind the scene".into());
+    }
+    if settings.max_depth < u32::MAX {
+        lacks.push(format!("light after {} segments", settings.max_depth));
+    }
+    lacks
+}
+
 /// Reproducible facts for the image's header.
 pub(super) fn metadata(
     job: &Job<'_>,
@@ -185,9 +202,9 @@ pub(super) fn metadata(
         format!("{}: {:.2} % energy{noise}", row.class, 100.0 * row.energy_share)
     };
     let shares: Vec<String> = bill.classes.iter().map(share).collect();
-    let named = |rows: Vec<&str>| if rows.is_empty() { "nothing".into() } else { rows.join(", ") };
-    let simulated = plan.rows.iter().filter(|row| row.on).map(|row| row.effect).collect();
-    let lacks = settings.effects.left_out().map(Effect::name).collect();
+    let simulated: Vec<&str> =
+        plan.rows.iter().filter(|row| row.on).map(|row| row.effect).collect();
+    let lacks = lacks(settings);
     let (low, high) = rendered.film.samples();
     let [width, height] = settings.size;
     let Region { start, end } = settings.region;
@@ -204,8 +221,8 @@ pub(super) fn metadata(
         ),
         ("glint.seed", text(settings.seed.to_string())),
         ("glint.effects", text(settings.effects.to_string())),
-        ("glint.simulated", text(named(simulated))),
-        ("glint.lacks", text(named(lacks))),
+        ("glint.simulated", text(listed(&simulated))),
+        ("glint.lacks", text(listed(&lacks))),
         ("glint.shares", text(shares.join("; "))),
         ("glint.settings", text(format!("{settings:?}"))),
         ("glint.origin", text(format!("{},{},{}", origin.x, origin.y, origin.z))),

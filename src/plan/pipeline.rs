@@ -33,6 +33,8 @@ pub struct Pipeline {
     pub emission: bool,
     /// Rays that leave the scene are shown what surrounds it.
     pub environment: bool,
+    /// A kind of lights that rays can meet, if they can meet any.
+    pub met_light: LightKind,
     /// Lights are sampled.
     pub light_sampling: bool,
     /// More than one light is, so that one must be chosen.
@@ -120,6 +122,12 @@ impl Pipeline {
             direct: allowed(Effect::Direct),
             emission,
             environment,
+            met_light: match () {
+                () if emission => LightKind::Surface,
+                () if has(&[Feature::Image]) => LightKind::Image,
+                () if has(&[Feature::Constant]) => LightKind::Constant,
+                () => LightKind::Disc,
+            },
             light_sampling,
             light_choice: light_sampling && (everything || lights.needs_choice()),
             shadows: allowed(Effect::Shadows),

@@ -4,7 +4,7 @@
 //! IEEE Trans. Software Eng. 17(9), 1991.
 
 /// Alias table over finite non-negative weights.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct AliasTable {
     /// (threshold within the bin, where the rest of the bin leads).
     bins: Vec<(f32, u32)>,

@@ -99,16 +99,16 @@ impl Path {
 
         let is_allowed = after.are_within(pipeline.events);
         self.only_looks_for_lights = !is_allowed;
-        if !is_allowed {
-            let direct = if pipeline.emission { LightKind::Surface } else { LightKind::Constant };
-            self.ray_class = self.events.class().unwrap_or(direct_class(direct));
+        let has_room = self.bounce + 2 < pipeline.max_depth;
+        let goes_on = is_allowed && has_room;
+        if !goes_on {
+            self.ray_class = self.events.class().unwrap_or(direct_class(pipeline.met_light));
         }
         let may_meet_light = pipeline.emission || pipeline.environment;
         let finds_lights = may_meet_light
             && (is_delta || pipeline.scatter_sampling)
             && pipeline.counts(self.events);
-        let has_room = self.bounce + 2 < pipeline.max_depth;
-        finds_lights || is_allowed && has_room
+        finds_lights || goes_on
     }
 
     /// The class of the light of this kind that its ray meets; `None` where that does not count.

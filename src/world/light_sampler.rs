@@ -15,7 +15,7 @@ use crate::sampling::AliasTable;
 use crate::scene::MaterialId;
 
 /// How lights are sampled.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LightSampler {
     /// One entry a light, those without a surface first; then perhaps one for no light.
     selection: AliasTable,

@@ -60,8 +60,8 @@ fn the_json_of_plan_follows_its_schema() {
 #[test]
 fn an_image_says_what_it_simulates_and_what_it_lacks() {
     let bench = bench();
-    let header = |effects: &str| {
-        let (code, said) = bench.render(&["scene.toml", "-o", "a.exr", "--effects", effects]);
+    let header_of = |options: &[&str]| {
+        let (code, said) = bench.render(&[&["scene.toml", "-o", "a.exr"], options].concat());
         assert_eq!(code, 0, "{said}");
         let metadata = channels(&bench.path("a.exr")).metadata;
         move |key: &str| match &metadata[key] {
@@ -69,6 +69,7 @@ fn an_image_says_what_it_simulates_and_what_it_lacks() {
             other => panic!("{key} is {other:?}"),
         }
     };
+    let header = |effects: &str| header_of(&["--effects", effects]);
     let auto = header("auto");
     assert_eq!(auto("glint.lacks"), "nothing");
     assert!(auto("glint.simulated").contains("refraction"), "{}", auto("glint.simulated"));
@@ -76,6 +77,9 @@ fn an_image_says_what_it_simulates_and_what_it_lacks() {
     let less = header("all,no-refraction,no-caustics");
     assert_eq!(less("glint.lacks"), "refraction, caustics");
     assert!(!less("glint.shares").contains("refraction"), "{}", less("glint.shares"));
+    let short = header_of(&["--max-depth", "2", "--background", "0,0,0"]);
+    assert_eq!(short("glint.lacks"), "environment behind the scene, light after 2 segments");
+    assert!(!short("glint.simulated").contains("diffuse"), "{}", short("glint.simulated"));
 }
 
 #[test]

@@ -11,7 +11,7 @@ const TRIANGLE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl used\nf 
 const LIBRARY: &str = "newmtl used\nKd 0.5 0.5 0.5\n\nnewmtl unused\nillum 7\nNi 1.5\nKe 1 1 1\n";
 
 /// The world and the plan of a scene file of this text, beside a model with a material that is used and one that is not.
-fn plan(scene: &str, effects: &str) -> (World, Plan) {
+fn plan(scene: &str, effects: &str, max_depth: u32) -> (World, Plan) {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write("a.obj", TRIANGLE);
@@ -22,13 +22,17 @@ fn plan(scene: &str, effects: &str) -> (World, Plan) {
     let effects: Effects = effects.parse().expect("effects");
     let whole = World::compile(scene).expect("it compiles");
     let world = whole.with_effects(&effects).expect("it has less");
-    let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
+    let wishes = Wishes { effects, max_depth, hide_background: false };
     let plan = Plan::new(&world, &camera, &wishes);
     (world, plan)
 }
 
 fn rows(scene: &str, effects: &str) -> Vec<Row> {
-    plan(scene, effects).1.rows
+    rows_of(scene, effects, u32::MAX)
+}
+
+fn rows_of(scene: &str, effects: &str, max_depth: u32) -> Vec<Row> {
+    plan(scene, effects, max_depth).1.rows
 }
 
 fn row<'r>(rows: &'r [Row], effect: &str) -> &'r Row {
@@ -119,7 +123,7 @@ fn lamp(environment: &str) -> (World, Plan) {
         "{CAMERA}[[object]]\nfile = 'a.obj'\n[[light.point]]\nposition = [0, 0, 2]\nintensity = 1\n\
          {environment}"
     );
-    plan(&scene, "auto")
+    plan(&scene, "auto", u32::MAX)
 }
 
 #[test]
@@ -140,6 +144,28 @@ fn lamps_beside_a_constant_environment_are_sampled_at_some_vertices() {
         assert!((sampled.len() as f32 / 10_000.0 - rate).abs() < 0.001, "{}", sampled.len());
         assert!(sampled.iter().all(|light| light.pdf_solid_angle == rate), "{:?}", sampled[0]);
     }
+}
+
+#[test]
+fn short_paths_and_lights_that_nothing_finds_are_said() {
+    let point = "[[light.point]]\nposition = [0, 0, 2]\nintensity = 1\n";
+    let scene = format!(
+        "{CAMERA}[[object]]\nfile = 'a.obj'\n[[object]]\nfile = 'a.obj'\nmaterial = 'chrome'\n\
+         [material.chrome.mirror]\nreflectance = 1\n{point}"
+    );
+    let on = |max_depth: u32, effects: &str| {
+        let rows = rows_of(&scene, effects, max_depth);
+        let on = |effect: &str| row(&rows, effect).on;
+        ["direct light of points", "mirror", "diffuse", "caustics"].map(on)
+    };
+    assert_eq!(on(u32::MAX, "auto"), [true; 4], "a mirror throws what a point lights on the rest");
+    assert_eq!(on(3, "auto"), [true; 4]);
+    assert_eq!(on(2, "auto"), [true, true, false, false]);
+    assert_eq!(on(1, "all"), [false; 4]);
+    assert!(!on(u32::MAX, "no-light-sampling")[0], "no ray meets a point");
+    let nothing = rows_of(&scene, "emission", u32::MAX);
+    let reason = &row(&nothing, "light-sampling").reason;
+    assert!(reason.contains("scattered light is left out"), "{reason}");
 }
 
 #[test]

@@ -61,6 +61,17 @@ pub(crate) fn paths() -> Vec<PathBuf> {
     paths
 }
 
+/// The plan `spared` with the estimator of `all`.
+pub(crate) fn with_lights_of(spared: Plan, all: Plan) -> Plan {
+    let pipeline = Pipeline {
+        light_sampling: all.pipeline.light_sampling,
+        combination: all.pipeline.combination,
+        light_choice: all.lights.needs_choice(),
+        ..spared.pipeline
+    };
+    Plan { pipeline, lights: all.lights, rows: spared.rows }
+}
+
 impl FileScene {
     pub(crate) fn load(path: &Path) -> Self {
         let mut scene = load_scene(path).expect("a scene of the repository");
@@ -71,23 +82,19 @@ impl FileScene {
 
     pub(crate) fn plan(&self, effects: &str) -> (World, Plan) {
         let effects: Effects = effects.parse().expect("effects");
-        let world = self.whole.with_effects(&effects).expect("a world with less in it");
-        let wishes = Wishes { effects, max_depth: u32::MAX, hide_background: false };
-        let plan = Plan::new(&world, &self.cameras[0], &wishes);
+        self.plan_for(&Wishes { effects, max_depth: u32::MAX, hide_background: false })
+    }
+
+    pub(crate) fn plan_for(&self, wishes: &Wishes) -> (World, Plan) {
+        let world = self.whole.with_effects(&wishes.effects).expect("a world with less in it");
+        let plan = Plan::new(&world, &self.cameras[0], wishes);
         (world, plan)
     }
 
     /// The plan of `auto` with the estimator of `all`: the same lights are sampled, and share with scattered rays.
     pub(crate) fn plan_with_all_lights(&self) -> (World, Plan) {
         let (world, auto) = self.plan("auto");
-        let (_, all) = self.plan("all");
-        let pipeline = Pipeline {
-            light_sampling: true,
-            combination: true,
-            light_choice: all.lights.needs_choice(),
-            ..auto.pipeline
-        };
-        (world, Plan { pipeline, lights: all.lights, rows: auto.rows })
+        (world, with_lights_of(auto, self.plan("all").1))
     }
 
     pub(crate) fn render(
