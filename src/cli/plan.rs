@@ -8,6 +8,7 @@ use super::statistics::PlanRow;
 use super::{DONE, plan_table, report};
 use crate::accel::Accelerator;
 use crate::error::Result;
+use crate::film::Region;
 use crate::filter::FilterSampler;
 use crate::plan::Plan;
 use crate::render::{FORECAST_SIZE, Forecast, forecast};
@@ -96,5 +97,30 @@ pub(super) fn predict<A: Accelerator>(
     let filter = FilterSampler::new(settings.filter);
     let tracer = settings.tracer(world, plan, camera, &filter).on(accelerator);
     let (everything, whole_plan, small) = prepared.everything(FORECAST_SIZE)?;
-    forecast(&tracer, &small, (&everything, &whole_plan), args.threads)
+    let region = shrunk(settings.region, settings.size);
+    forecast(&tracer, &small, region, (&everything, &whole_plan), args.threads)
+}
+
+/// The pixels of the forecast's picture that show anything of `region` of a picture of `size`.
+fn shrunk(region: Region, size: [u32; 2]) -> Region {
+    let scaled = |pixel: u32, k: usize| u64::from(pixel) * u64::from(FORECAST_SIZE[k]);
+    Region {
+        start: [0, 1].map(|k| (scaled(region.start[k], k) / u64::from(size[k])) as u32),
+        end: [0, 1].map(|k| scaled(region.end[k], k).div_ceil(u64::from(size[k])) as u32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crop_is_forecast_from_what_it_shows() {
+        let crop = |start, end, size| shrunk(Region { start, end }, size);
+        assert_eq!(crop([0, 0], [1280, 720], [1280, 720]), Region::full(FORECAST_SIZE));
+        let part = crop([635, 0], [645, 10], [1280, 720]);
+        assert_eq!(part, Region { start: [63, 0], end: [65, 1] });
+        let tiny = crop([3, 3], [4, 4], [4, 4]);
+        assert_eq!(tiny, Region { start: [96, 54], end: FORECAST_SIZE });
+    }
 }

@@ -135,7 +135,7 @@ impl Image {
     pub fn replace_impossible(&mut self) -> usize {
         const LARGEST_HALF: f32 = 65504.0;
         let repair = |channels: &mut [f32]| {
-            let is_possible = |c: f32| c >= 0.0 && c < f32::INFINITY;
+            let is_possible = |c: f32| (0.0..f32::INFINITY).contains(&c);
             let broken = channels.iter().any(|&c| !is_possible(c));
             for c in channels.iter_mut().filter(|c| !is_possible(**c)) {
                 *c = if *c == f32::INFINITY { LARGEST_HALF } else { 0.0 };

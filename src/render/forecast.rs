@@ -23,25 +23,28 @@ pub struct Forecast {
     light: [f64; 2],
 }
 
-/// Of the small picture, in pixels and a pixel.
+/// Of the small picture, in pixels.
 pub const FORECAST_SIZE: [u32; 2] = [128, 72];
-const SAMPLES: u64 = 4;
+/// Of the part of it that is traced; more a pixel where that is a small one.
+const PATHS: u64 = 36_864;
 const TRIALS: usize = 3;
 
 /// Traces small pictures of the scene of `tracer` with `camera`, which is its own for a picture of
-/// [`FORECAST_SIZE`]; `everything` is the world in which everything runs, with its plan.
+/// [`FORECAST_SIZE`]; `region` is the part of that picture that counts; the last world is the one in which everything
+/// runs, with its plan.
 ///
 /// # Errors
 /// When threads cannot be started.
 pub fn forecast<A: Accelerator>(
     tracer: &Tracer<'_, A>,
     camera: &Camera,
+    region: Region,
     (world, plan): (&World, &Plan),
     threads: usize,
 ) -> Result<Forecast> {
     let job = RenderJob {
-        region: Region::full(FORECAST_SIZE),
-        samples_per_pixel: SAMPLES,
+        region,
+        samples_per_pixel: PATHS.div_ceil(region.pixels().max(1) as u64),
         threads,
         batch: Wavefront::DEFAULT_BATCH,
         stop: None,

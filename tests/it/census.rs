@@ -160,7 +160,7 @@ fn whatever_a_surface_does_is_called_for() {
     for seed in 0..4000 {
         let mut numbers = CounterRng::new(seed);
         let surface = any_surface(&mut numbers);
-        let world = world(surface.clone());
+        let world = world(surface);
         let census = world.census();
         let missing = not_called_for(&world, &census, &mut numbers);
         assert!(missing.is_empty(), "{missing:?} of {surface:?}");
