@@ -169,9 +169,10 @@ Examples:
 It takes the options of `glint render`: put `plan` in place of `render` in any command line.
 
 --effects: auto (what the scene calls for), all (everything runs; the picture is the same), path (auto), direct, whitted,
-ambient-occlusion; or a list, which begins with one of these, with an effect (nothing but what is listed) or with no-EFFECT
-(auto without it), and adds EFFECT or takes out no-EFFECT. Effects: emission, environment, direct, shadows, diffuse, glossy,
-mirror, refraction, absorption, caustics, textures, normal-maps, cut-outs, depth-of-field, light-sampling, scatter-sampling.";
+ambient-occlusion; or a list, which begins with one of these, with an effect (that, shadows and both ways of finding lights) or
+with no-EFFECT (auto without it), and adds EFFECT or takes out no-EFFECT. Effects: emission, environment, direct, shadows,
+diffuse, glossy, mirror, refraction, absorption, caustics, textures, normal-maps, cut-outs, depth-of-field, light-sampling,
+scatter-sampling.";
 
 const BENCH_EXAMPLES: &str = "\
 Examples:
