@@ -10,16 +10,22 @@ pub(super) fn lines(bill: &Bill) -> Vec<String> {
     )];
     for row in bill.ran() {
         lines.push(format!(
-            "  {:14}{:9.2} {:4.1} % {:10} {:12} {:8.1} {:7.0}",
+            "  {:14}{:9.2} {:4.1} % {:10} {:12} {:>8} {:7.0}",
             row.stage,
             row.seconds,
             100.0 * row.time_share,
             row.calls,
             row.rays,
-            row.nanoseconds_per_ray(),
+            row.nanoseconds_per_ray().map_or("-".into(), |ns| format!("{ns:.1}")),
             row.mean_batch
         ));
     }
+    let rest = bill.worker_seconds - bill.ran().map(|row| row.seconds).sum::<f64>();
+    lines.push(format!(
+        "  {:14}{rest:9.2} {:4.1} %",
+        "elsewhere",
+        100.0 * rest / bill.worker_seconds.max(1e-9)
+    ));
     let cut_outs = &bill.cut_outs;
     if cut_outs.calls > 0 {
         lines.push(format!(
@@ -44,6 +50,9 @@ pub(super) fn lines(bill: &Bill) -> Vec<String> {
             100.0 * row.time_share,
             100.0 * row.energy_share
         ));
+    }
+    if bill.classes.iter().any(|row| row.variance_share.is_some_and(|share| share < -5e-4)) {
+        lines.push("  (less noise than none: it cancels that of others)".into());
     }
     lines
 }

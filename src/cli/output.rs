@@ -10,7 +10,8 @@ use crate::image::{
 };
 use crate::math::Rgb;
 use crate::render::{Aov, Layers};
-use std::path::PathBuf;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
 
 /// Formats that can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,12 +27,19 @@ pub(super) struct Outputs {
     files: Vec<(PathBuf, Format)>,
 }
 
+/// The same for all names of a file.
+fn identity(path: &Path) -> PathBuf {
+    let same = std::fs::canonicalize(path).or_else(|_| std::path::absolute(path));
+    same.unwrap_or_else(|_| path.to_path_buf())
+}
+
 impl Outputs {
-    /// What `-o` names, or SCENE.exr and SCENE.png in the current folder; the statistics' file is written
-    /// elsewhere, but checked here too.
+    /// What `-o` names, or SCENE.exr and SCENE.png in the current folder; the files of `--stats` and `--report` are
+    /// written elsewhere, but checked here too.
     ///
     /// # Errors
-    /// A usage error for an unknown ending; [`Error::Io`] where a file could not be written.
+    /// A usage error for an unknown ending and for a file that would be written twice; [`Error::Io`] where one could
+    /// not be written.
     pub(super) fn check(args: &Render) -> Result<Self> {
         let default;
         let names = if args.output.is_empty() {
@@ -60,10 +68,39 @@ impl Outputs {
                 Ok((path.clone(), format))
             })
             .collect::<Result<_>>()?;
-        for path in args.stats.iter().chain(&args.report) {
-            check_writable(path)?;
+        if let Some(page) = &args.report {
+            let ending = page.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+            if !matches!(ending.as_deref(), Some("html" | "htm")) {
+                let name = page.display();
+                return Err(Error::Usage(format!("--report {name}: the ending must be .html")));
+            }
         }
+        let mut seen = HashSet::new();
+        let texts = || args.stats.iter().chain(&args.report);
+        for path in names.iter().chain(texts()) {
+            if !seen.insert(identity(path)) {
+                let name = path.display();
+                return Err(Error::Usage(format!("{name} would be written twice: name two files")));
+            }
+        }
+        texts().try_for_each(|path| check_writable(path))?;
         Ok(Self { files })
+    }
+
+    /// # Errors
+    /// A usage error where one of the files that `args` would write is one of `inputs`.
+    pub(super) fn check_against(&self, args: &Render, inputs: &[PathBuf]) -> Result<()> {
+        let read: HashSet<PathBuf> = inputs.iter().map(|path| identity(path)).collect();
+        let written = self.files.iter().map(|(path, _)| path);
+        for path in written.chain(&args.stats).chain(&args.report) {
+            if read.contains(&identity(path)) {
+                let name = path.display();
+                return Err(Error::Usage(format!(
+                    "{name} is a file of the scene: name another one"
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Whether extra layers have a file to go to.

@@ -13,7 +13,6 @@ use crate::filter::FilterSampler;
 use crate::plan::Plan;
 use crate::render::{FORECAST_SIZE, Forecast, forecast};
 use serde::Serialize;
-use std::io::Write;
 
 /// What `glint plan --json` prints.
 #[derive(Debug, Serialize)]
@@ -78,7 +77,7 @@ impl Task for Show<'_> {
             report::say_all(args, &lines);
             report::json(&PlanReport::new(prepared, &forecast))?;
         } else {
-            let _ = writeln!(std::io::stdout(), "{}", lines.join("\n"));
+            report::print(&lines.join("\n"))?;
         }
         Ok(DONE)
     }

@@ -56,9 +56,15 @@ fn line(row: &Row, forecast: Option<&Forecast>) -> String {
 fn outlook(prepared: &Prepared, forecast: &Forecast) -> Vec<String> {
     let seconds = forecast.seconds(prepared.paths());
     let spared = forecast.spared();
-    let mut lines = vec![format!(
-        "predicted: {seconds:.1} s of all threads together; {spared:.2} times as long if everything ran"
-    )];
+    // Within a twentieth it is the machine's noise.
+    let spared = match spared > 1.05 {
+        true => format!("{spared:.1} times as long if everything ran"),
+        false => "about as long if everything ran".into(),
+    };
+    let mut lines = vec![
+        "  (a ray may be in the time of several rows: that of its light, and of shadows)".into(),
+        format!("predicted: {seconds:.1} s of all threads together; {spared}"),
+    ];
     if let Some(dropped) = forecast.dropped(&prepared.settings.effects) {
         let left: Vec<&str> = prepared.settings.effects.left_out().map(|e| e.name()).collect();
         let what = left.join(", ");

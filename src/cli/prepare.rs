@@ -53,6 +53,7 @@ impl Prepared {
         let outputs = Outputs::check(args)?;
         let reading = |done, total| progress::reading(&busy, done, total);
         let (mut scene, settings) = select::scene(args, Some(&reading))?;
+        outputs.check_against(args, &scene.inputs)?;
         let load_seconds = start.elapsed().as_secs_f64();
 
         // A scene to a world, and the camera in it.

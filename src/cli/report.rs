@@ -23,6 +23,7 @@ use crate::world::World;
 use serde::Serialize;
 use std::borrow::Borrow;
 use std::io::Write;
+use std::path::Path;
 
 /// Writes a line to stderr; a closed stderr is nobody's error.
 fn say(args: &Render, line: &str) {
@@ -68,8 +69,21 @@ pub(super) fn say_all(args: &Render, lines: &[String]) {
 pub(super) fn json(value: &impl Serialize) -> Result<()> {
     let json = serde_json::to_string_pretty(value)
         .map_err(|e| Error::Usage(format!("what was found cannot be written: {e}")))?;
-    let _ = writeln!(std::io::stdout(), "{json}");
-    Ok(())
+    print(&json)
+}
+
+/// What was asked for, to stdout; whoever stops reading has read enough.
+///
+/// # Errors
+/// [`Error::Io`] where it cannot be written.
+pub(super) fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::io(Path::new("standard output"), "write", error))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// What will be rendered, defaults included.
@@ -167,7 +181,7 @@ pub(super) fn finished(
         write_whole(path, |file| file.write_all(page.as_bytes()))?;
     }
     if args.json {
-        let _ = writeln!(std::io::stdout(), "{json}");
+        print(&json)?;
     }
     Ok(())
 }

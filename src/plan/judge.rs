@@ -39,9 +39,9 @@ fn called_for(witness: &Witness) -> Reason {
 /// What it means that nothing in a scene has a feature.
 const fn nothing(feature: Feature) -> &'static str {
     match feature {
-        Feature::PointLight => "no point or spot light",
-        Feature::Direction => "no directional light",
-        Feature::Sun => "no sun and no other directional light",
+        Feature::PointLight => "no point or spot light shines",
+        Feature::Direction => "no directional light shines",
+        Feature::Sun => "no sun and no other directional light shines",
         Feature::Emission => "no surface emits",
         Feature::Constant => "no constant environment",
         Feature::Image => "no sky and no image around the scene",
@@ -61,24 +61,31 @@ impl Judge<'_> {
     /// What the user took out.
     fn left_out(&self, effect: Effect) -> Option<Reason> {
         let effects = &self.wishes.effects;
-        (!effects.allowed.has(effect)).then(|| off(format!("left out: --effects {effects}")))
+        (!effects.allowed.has(effect)).then(|| off(format!("left out: effects {effects}")))
     }
 
     /// What takes paths of more segments than the user wants.
     fn too_long(&self, segments: u32) -> Option<Reason> {
         let depth = self.wishes.max_depth;
-        (depth < segments).then(|| off(format!("--max-depth {depth} ends paths before")))
+        (depth < segments).then(|| off(format!("a depth of {depth} ends paths before")))
     }
 
     /// That everything runs.
     fn everything(&self) -> Option<Reason> {
-        (self.wishes.effects.style == Style::All).then(|| on("--effects all"))
+        (self.wishes.effects.style == Style::All).then(|| on("effects all"))
     }
 
     /// The first of `features` that the scene has; `Err` with the reason why there is none.
     fn found(&self, features: &[Feature]) -> Result<Reason, Reason> {
-        let witness = features.iter().find_map(|&feature| self.census.witness(feature));
-        witness.map(called_for).ok_or_else(|| off(nothing(features[0])))
+        let mut witnesses = features.iter().filter_map(|&feature| self.census.witness(feature));
+        let Some(first) = witnesses.next() else { return Err(off(nothing(features[0]))) };
+        let mut reason = called_for(first);
+        // Who calls for several of them is not counted twice.
+        if first.count == 1 && witnesses.any(|other| other.count > 1 || other.first != first.first)
+        {
+            reason.1.push_str(" and others");
+        }
+        Ok(reason)
     }
 
     /// `reason`, unless the user took the effect out or had everything run.
@@ -118,7 +125,7 @@ impl Judge<'_> {
         let is_found = light_sampling || scatter_sampling && has(false);
         if (has(true) || has(false)) && !is_found && self.is_sampling_left_out() {
             let effects = self.wishes.effects;
-            return off(format!("no ray meets it, and it is not sampled: --effects {effects}"));
+            return off(format!("no ray meets it, and it is not sampled: effects {effects}"));
         }
         self.everything().unwrap_or_else(|| {
             let found = match self.found(features) {
@@ -155,7 +162,7 @@ impl Judge<'_> {
         (self.pipeline.max_depth < 2).then(|| match self.too_long(2) {
             Some(reason) => reason,
             None if !self.census.has_any(&scatter) => off("no surface scatters light"),
-            None => off(format!("scattered light is left out: --effects {}", self.wishes.effects)),
+            None => off(format!("scattered light is left out: effects {}", self.wishes.effects)),
         })
     }
 
@@ -250,7 +257,7 @@ impl Judge<'_> {
 
     pub(super) fn light_choice(&self) -> Reason {
         match (self.pipeline.light_choice, self.pipeline.everything) {
-            (true, true) => on("--effects all"),
+            (true, true) => on("effects all"),
             (true, false) if self.lights.idle() > 0.0 => on(format!(
                 "one of {}, or none at {:.0} % of the vertices: scattering finds what is around",
                 self.lights.choices(),
@@ -280,7 +287,7 @@ impl Judge<'_> {
     pub(super) fn combination(&self) -> Reason {
         if self.pipeline.combination {
             return on(match self.pipeline.everything {
-                true => "--effects all",
+                true => "effects all",
                 false => "some lights are found in both ways",
             });
         }

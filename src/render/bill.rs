@@ -124,8 +124,8 @@ impl Bill {
 }
 
 impl StageRow {
-    /// Nanoseconds that it took for a path or a ray.
-    pub fn nanoseconds_per_ray(&self) -> f64 {
-        1e9 * self.seconds / self.rays.max(1) as f64
+    /// Nanoseconds that it took for a path or a ray; `None` where it had none.
+    pub fn nanoseconds_per_ray(&self) -> Option<f64> {
+        (self.rays > 0).then(|| 1e9 * self.seconds / self.rays as f64)
     }
 }

@@ -163,6 +163,11 @@ impl Effects {
         ("ambient-occlusion", Self { style: Style::AmbientOcclusion, allowed: Self::DIRECT }),
     ];
 
+    fn allowed_beyond(&self, some: &[Effect]) -> Vec<Effect> {
+        let is_more = |effect: &Effect| self.allowed.has(*effect) && !some.contains(effect);
+        Effect::ALL.iter().copied().filter(is_more).collect()
+    }
+
     /// The effects that were taken out of everything.
     pub fn left_out(&self) -> impl Iterator<Item = Effect> {
         let allowed = self.allowed;
@@ -206,7 +211,8 @@ impl FromStr for Effects {
                     let sets = Self::NAMED.iter().map(|named| named.0);
                     // `direct` is a set in the first place and an effect after it.
                     let single = Effect::ALL.iter().filter(|&&effect| effect != Effect::Direct);
-                    let known = sets.chain(single.map(|effect| effect.name()));
+                    let known = sets.filter(|_| taken.is_none());
+                    let known = known.chain(single.map(|effect| effect.name()));
                     return Err(unknown_name("effects", name, known));
                 }
             });
@@ -221,6 +227,17 @@ impl fmt::Display for Effects {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some((name, _)) = Self::NAMED.iter().find(|named| named.1 == *self) {
             return f.write_str(name);
+        }
+        // A list of few effects, where that says it all.
+        let few = self.allowed_beyond(&Self::FINDING_LIGHTS);
+        let is_few = few.len() < 5 && few.first().is_some_and(|first| *first != Effect::Direct);
+        if self.style == Style::Auto && is_few {
+            let names: Vec<&str> = few.iter().map(|effect| effect.name()).collect();
+            f.write_str(&names.join(","))?;
+            for effect in Self::FINDING_LIGHTS.iter().filter(|way| !self.allowed.has(**way)) {
+                write!(f, ",no-{}", effect.name())?;
+            }
+            return Ok(());
         }
         f.write_str(match self.style {
             Style::Auto => "auto",
@@ -253,6 +270,8 @@ mod tests {
     #[test]
     fn words_add_and_take_out() {
         assert_eq!(parsed("path"), Effects::AUTO);
+        assert_eq!(parsed("emission,mirror,no-shadows").to_string(), "emission,mirror,no-shadows");
+        assert!(!"no-all".parse::<Effects>().unwrap_err().contains("did you mean"));
         assert_eq!(parsed("no-refraction"), parsed("auto,no-refraction"));
         assert_eq!(parsed("all,no-refraction").style, Style::All);
         assert!(!parsed("all,no-refraction").allowed.has(Effect::Refraction));
@@ -261,8 +280,8 @@ mod tests {
             Effects::DIRECT.without(Effect::Shadows).with(Effect::Mirror)
         });
         let mirror = parsed("mirror,emission").allowed;
-        assert_eq!(mirror.iter().count(), 4);
-        assert!(mirror.has(Effect::LightSampling) && !mirror.has(Effect::Textures));
+        assert_eq!(mirror.iter().count(), 5);
+        assert!(mirror.has(Effect::Shadows) && !mirror.has(Effect::Textures));
     }
 
     #[test]

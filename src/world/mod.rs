@@ -113,6 +113,12 @@ impl World {
             });
         }
         world.lights = Lights::compile(&world, &scene)?;
+        if world.lights.weights().all(|weight| weight == 0.0) {
+            warnings.push(Warning {
+                location: None,
+                message: "no light of the scene sends anything: the picture will be black".into(),
+            });
+        }
         world.warnings = warnings;
         Ok(world)
     }

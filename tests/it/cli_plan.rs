@@ -58,6 +58,24 @@ fn the_json_of_plan_follows_its_schema() {
 }
 
 #[test]
+fn nothing_is_written_over_the_scene_or_twice() {
+    let bench = bench();
+    let before = std::fs::read(bench.path("scene.toml")).expect("the scene");
+    for (options, complaint) in [
+        (&["--stats", "scene.toml"][..], "scene.toml is a file of the scene"),
+        (&["--stats", "./scene.toml"], "scene.toml is a file of the scene"),
+        (&["-o", "a.png", "--stats", "./a.png"], "would be written twice"),
+        (&["--stats", "a.html", "--report", "a.html"], "would be written twice"),
+        (&["--report", "page.txt"], "the ending must be .html"),
+    ] {
+        let (code, said) = bench.render(&[&["scene.toml"], options].concat());
+        assert_eq!(code, 2, "{options:?}: {said}");
+        assert!(said.contains(complaint), "{options:?}: {said}");
+    }
+    assert!(std::fs::read(bench.path("scene.toml")).expect("the scene") == before);
+}
+
+#[test]
 fn an_image_says_what_it_simulates_and_what_it_lacks() {
     let bench = bench();
     let header_of = |options: &[&str]| {

@@ -181,9 +181,9 @@ fn what_the_user_takes_out_is_said() {
         };
         assert!(!all.is_empty(), "{effect:?} has no row");
         for row in all {
-            assert!(!row.on && row.reason.contains("left out: --effects"), "{row:?}");
+            assert!(!row.on && row.reason.contains("left out: effects"), "{row:?}");
         }
-        let others = rows.iter().filter(|row| row.reason == "--effects all").count();
+        let others = rows.iter().filter(|row| row.reason == "effects all").count();
         assert!(others >= 14, "{effect:?}: {others} rows still on");
     }
 }

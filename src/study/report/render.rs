@@ -59,7 +59,8 @@ fn stacks(html: &mut Html, bill: &Bill) {
         html.markup("<tr>").element("td", &[], row.stage);
         html.element("td", &[], format!("{:.3}", row.seconds));
         html.element("td", &[], percent(row.time_share)).element("td", &[], row.calls);
-        html.element("td", &[], format!("{:.1}", row.nanoseconds_per_ray()));
+        let cost = row.nanoseconds_per_ray().map_or("-".into(), |ns| format!("{ns:.1}"));
+        html.element("td", &[], cost);
         html.element("td", &[], format!("{:.0}", row.mean_batch)).markup("</tr>\n");
     }
     html.markup("</table>\n");
