@@ -7,11 +7,12 @@ use super::prepare::Prepared;
 use super::statistics::PlanRow;
 use super::{DONE, plan_table, report};
 use crate::accel::Accelerator;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::film::Region;
 use crate::filter::FilterSampler;
 use crate::plan::Plan;
 use crate::render::{FORECAST_SIZE, Forecast, forecast};
+use crate::trace::Tracer;
 use serde::Serialize;
 
 /// What `glint plan --json` prints.
@@ -86,18 +87,47 @@ impl Task for Show<'_> {
 /// What it will cost.
 ///
 /// # Errors
-/// When threads cannot be started.
+/// When threads cannot be started, and where an accelerator cannot be built.
 pub(super) fn predict<A: Accelerator>(
     args: &Render,
     prepared: &Prepared,
     accelerator: &A,
 ) -> Result<Forecast> {
-    let Prepared { settings, world, plan, camera, .. } = prepared;
+    let Prepared { settings, world, plan, chosen, .. } = prepared;
     let filter = FilterSampler::new(settings.filter);
-    let tracer = settings.tracer(world, plan, camera, &filter).on(accelerator);
     let (everything, whole_plan, small) = prepared.everything(FORECAST_SIZE)?;
+    let planned = settings.tracer(world, plan, &small, &filter).on(accelerator);
+    let whole = settings.tracer(&everything, &whole_plan, &small, &filter);
     let region = shrunk(settings.region, settings.size);
-    forecast(&tracer, &small, region, (&everything, &whole_plan), args.threads)
+    // An accelerator asks hit filters about what they were wanted for when it was built. Another one for what everything
+    // costs takes no time worth saying, unless the scene is a large one: then that cost is left out.
+    if everything.geometry.stored_triangles() > REBUILT {
+        return forecast(&planned, &whole.on(accelerator), region, args.threads);
+    }
+    let mut found = None;
+    let compared = Compare { planned, whole, region, threads: args.threads, found: &mut found };
+    chosen.build(everything.geometry.clone(), &args.build.options(args.threads), compared)?;
+    found.ok_or_else(|| Error::Usage("there is no forecast".into()))
+}
+
+/// Triangles of the largest scene for whose forecast another accelerator is built.
+const REBUILT: usize = 1_000_000;
+
+/// A forecast, once there is an accelerator in which everything runs.
+struct Compare<'a, 't, A> {
+    planned: Tracer<'t, A>,
+    whole: Tracer<'t, ()>,
+    region: Region,
+    threads: usize,
+    found: &'a mut Option<Forecast>,
+}
+
+impl<A: Accelerator> Task for Compare<'_, '_, A> {
+    fn run<B: Accelerator>(self, _: &'static str, _: String, accelerator: &B) -> Result<u8> {
+        let Self { planned, whole, region, threads, found } = self;
+        *found = Some(forecast(&planned, &whole.on(accelerator), region, threads)?);
+        Ok(DONE)
+    }
 }
 
 /// The pixels of the forecast's picture that show anything of `region` of a picture of `size`.

@@ -3,21 +3,19 @@
 
 use super::{RenderJob, Rendered, render};
 use crate::accel::Accelerator;
-use crate::camera::Camera;
 use crate::error::Result;
 use crate::film::Region;
 use crate::ledger::Ledger;
-use crate::plan::{Plan, Row};
+use crate::plan::Row;
 use crate::scene::{Effects, Style};
 use crate::trace::{Tracer, Wavefront};
-use crate::world::World;
 
 /// What a small picture took and showed.
 #[derive(Clone, Debug)]
 pub struct Forecast {
     /// With what will run.
     pub planned: Ledger,
-    /// With everything; hit filters are asked only where there is something to cut out.
+    /// With everything.
     pub everything: Ledger,
     /// Mean luminance of the two.
     light: [f64; 2],
@@ -29,17 +27,15 @@ pub const FORECAST_SIZE: [u32; 2] = [128, 72];
 const PATHS: u64 = 36_864;
 const TRIALS: usize = 5;
 
-/// Traces small pictures of the scene of `tracer` with `camera`, which is its own for a picture of
-/// [`FORECAST_SIZE`]; `region` is the part of that picture that counts; the last world is the one in which everything
-/// runs, with its plan.
+/// Traces small pictures, of [`FORECAST_SIZE`], with what will run and with everything; `region` is the part of them that
+/// counts.
 ///
 /// # Errors
 /// When threads cannot be started.
-pub fn forecast<A: Accelerator>(
-    tracer: &Tracer<'_, A>,
-    camera: &Camera,
+pub fn forecast<A: Accelerator, B: Accelerator>(
+    planned: &Tracer<'_, A>,
+    everything: &Tracer<'_, B>,
     region: Region,
-    (world, plan): (&World, &Plan),
     threads: usize,
 ) -> Result<Forecast> {
     let job = RenderJob {
@@ -49,14 +45,9 @@ pub fn forecast<A: Accelerator>(
         batch: Wavefront::DEFAULT_BATCH,
         stop: None,
     };
-    let with = |world, plan| {
-        let Tracer { accelerator, filter, sampler, .. } = *tracer;
-        let tracer = Tracer { world, accelerator, camera, filter, sampler, plan };
-        render(&tracer, &job, &|_| ())
-    };
     // The two take turns; of each the fastest counts, since whatever else runs on the machine, and a cold cache, can
     // only make it slower.
-    let both = || Ok((with(tracer.world, tracer.plan)?, with(world, plan)?));
+    let both = || Ok((render(planned, &job, &|_| ())?, render(everything, &job, &|_| ())?));
     let faster = |a: Rendered, b: Rendered| {
         if b.ledger.worker_seconds < a.ledger.worker_seconds { b } else { a }
     };
