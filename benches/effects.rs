@@ -17,7 +17,7 @@ use glint::load::{LoadOptions, Surroundings, load_scene_with};
 use glint::math::Rgb;
 use glint::plan::{Plan, Wishes};
 use glint::render::{RenderJob, Rendered, render};
-use glint::sampling::{Sampler, SamplerKind};
+use glint::sampling::{Sampler, Strategy};
 use glint::scene::{self, ColorInput, Effects, Environment, Material, Scene, Surface};
 use glint::trace::{Tracer, Wavefront};
 use glint::world::World;
@@ -52,7 +52,7 @@ impl Way {
             accelerator: &self.backend,
             camera: &camera,
             filter: &filter,
-            sampler: Sampler::new(SamplerKind::Sobol, seed),
+            sampler: Sampler::new(Strategy::Sobol, seed, SAMPLES),
             plan: &self.plan,
         };
         let job = RenderJob {

@@ -16,7 +16,7 @@ use glint::load::load_scene;
 use glint::math::{DVec3, Rgb};
 use glint::plan::{Plan, Wishes};
 use glint::render::{RenderJob, render};
-use glint::sampling::{Sampler, SamplerKind};
+use glint::sampling::{Sampler, Strategy};
 use glint::scene::{
     self, ColorInput, Effects, Environment, Material, MaterialId, Projection, Surface,
 };
@@ -134,7 +134,7 @@ fn measure(path: &Path) -> Result<()> {
         batch: Wavefront::DEFAULT_BATCH,
         stop: None,
     };
-    let sampler = Sampler::new(SamplerKind::Sobol, 0);
+    let sampler = Sampler::new(Strategy::Sobol, 0, SAMPLES);
 
     let recorder = Recorder { inner: &embree, batches: Mutex::default() };
     let recording = Tracer {
@@ -142,7 +142,7 @@ fn measure(path: &Path) -> Result<()> {
         accelerator: &recorder,
         camera: &camera,
         filter: &filter,
-        sampler,
+        sampler: sampler.clone(),
         plan,
     };
     let rays = render(&recording, &job(1), &|_| ())?.ledger.rays();

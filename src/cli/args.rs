@@ -2,7 +2,7 @@
 
 use super::values::{
     Env, count, crop, direction, duration, env, field_of_view, filter, finite, named,
-    override_material, point, replay, rgb_fractions, size, threads,
+    override_material, point, replay, rgb_fractions, sampler, size, threads,
 };
 use crate::accel::{BuildOptions, Quality};
 use crate::filter::Filter;
@@ -11,7 +11,7 @@ use crate::image::ToneMap;
 use crate::math::{DVec3, Rgb};
 use crate::os::Isa;
 use crate::render::Aov;
-use crate::sampling::SamplerKind;
+use crate::sampling::Strategy;
 use crate::scene::{Effects, Material};
 use crate::study::bench::RayKind;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -103,9 +103,10 @@ pub(super) struct Render {
     /// (glint plan --help names them all) [default: auto]
     #[arg(long, value_name = "NAME,...", help_heading = "Image")]
     pub(super) effects: Option<Effects>,
-    /// Sampler: sobol or independent [default: sobol]
-    #[arg(long, value_name = "NAME", value_parser = named("sampler", &SamplerKind::ALL), help_heading = "Image")]
-    pub(super) sampler: Option<SamplerKind>,
+    /// Sampler of pixels and paths: sobol, sobol-blue-noise, halton, pmj02, jittered, random and more (glint samples
+    /// plot --help names them all) [default: sobol]
+    #[arg(long, value_name = "NAME", value_parser = sampler, help_heading = "Image")]
+    pub(super) sampler: Option<Strategy>,
     /// Pixel filter: box, tent, gaussian, mitchell, blackman-harris or lanczos [default: blackman-harris]
     #[arg(long, value_name = "NAME[:RADIUS]", value_parser = filter, help_heading = "Image")]
     pub(super) filter: Option<Filter>,

@@ -11,7 +11,7 @@ use crate::load::{self, LoadOptions, Surroundings};
 use crate::math::{DVec3, Rgb};
 use crate::plan::{Plan, Wishes};
 use crate::render::Aov;
-use crate::sampling::{Sampler, SamplerKind};
+use crate::sampling::{Sampler, Strategy};
 use crate::scene::{self, Effects, Projection, Scene, SceneSettings};
 use crate::trace::Tracer;
 use crate::world::World;
@@ -26,7 +26,7 @@ pub(super) struct Settings {
     pub(super) effects: Effects,
     /// The camera does not see the surroundings.
     pub(super) hide_background: bool,
-    pub(super) sampler: SamplerKind,
+    pub(super) sampler: Strategy,
     pub(super) seed: u64,
     pub(super) filter: Filter,
     pub(super) exposure: Option<f32>,
@@ -40,7 +40,8 @@ impl Settings {
     pub(super) fn resolve(args: &Render, file: &SceneSettings) -> Result<Self> {
         let size = args.size.or(file.size).unwrap_or([1280, 720]);
         check_pixels(args, size)?;
-        let filter = file.filter.as_ref().map(|text| Filter::parse(text)).transpose()?;
+        let filter = file.filter.as_deref().map(Filter::parse).transpose()?;
+        let sampler = file.sampler.as_deref().map(Strategy::sampler).transpose()?;
         Ok(Self {
             size,
             region: args.crop.map_or(Region::full(size), |[x0, y0, x1, y1]| Region {
@@ -51,7 +52,7 @@ impl Settings {
             max_depth: args.max_depth.or(file.max_depth).unwrap_or(u32::MAX),
             effects: args.effects.map_or_else(|| effects_in_file(file), Ok)?,
             hide_background: args.background.is_some(),
-            sampler: said(args.sampler, &file.sampler, &SamplerKind::ALL, "sampler")?,
+            sampler: args.sampler.or(sampler).unwrap_or_default(),
             seed: args.seed.or(file.seed).unwrap_or(0),
             filter: args.filter.or(filter).unwrap_or_default(),
             exposure: args.exposure.or(file.exposure),
@@ -85,7 +86,7 @@ impl Settings {
             accelerator: &(),
             camera,
             filter,
-            sampler: Sampler::new(self.sampler, self.seed),
+            sampler: Sampler::new(self.sampler, self.seed, self.samples_per_pixel),
             plan,
         }
     }

@@ -3,6 +3,7 @@
 use crate::error::unknown_name;
 use crate::filter::Filter;
 use crate::math::{DVec3, Rgb};
+use crate::sampling::Strategy;
 use crate::scene::{ColorInput, Environment, Material, Surface};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -26,6 +27,10 @@ pub(super) fn named<T: Copy>(
         let found = all.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
         found.ok_or_else(|| unknown_name(kind, name, all.iter().map(|(known, _)| *known)))
     }
+}
+
+pub(super) fn sampler(text: &str) -> Result<Strategy, String> {
+    Strategy::sampler(text).map_err(|error| error.to_string())
 }
 
 pub(super) fn filter(text: &str) -> Result<Filter, String> {

@@ -1,69 +1,80 @@
-//! The samplers of `N` paths at once: loops that the compiler turns into vector instructions.
+//! The numbers of `N` paths at once: loops that the compiler turns into vector instructions.
 //!
-//! Each lane draws what its [`PathSampler`] would draw alone, by the same functions. Meant to be called from
-//! inside kernels (`os::Kernel`), so everything here is inlined.
+//! Each lane draws what [`Sampler`] would draw for it alone, by the same functions. Meant to be called from inside
+//! kernels (`os::Kernel`), so everything here is inlined.
 
-use super::{Dimension, PathSampler, Sampler, SamplerKind};
+use super::sampler::Source;
+use super::strategy::{sobol, split};
+use super::{Dimension, SampleKey, Sampler, hash};
 
-/// [`PathSampler`]s of one strategy, as one array a field.
+/// [`SampleKey`]s, as one array a field.
 #[derive(Clone, Debug)]
-pub struct PathSamplers<const N: usize> {
+pub struct SampleKeys<const N: usize> {
     keys: [u64; N],
     indices: [u32; N],
-    kind: SamplerKind,
 }
 
-impl<const N: usize> PathSamplers<N> {
-    /// Lanes for paths that draw from `sampler`.
-    pub fn new(sampler: &Sampler) -> Self {
-        Self { keys: [0; N], indices: [0; N], kind: sampler.kind }
+impl<const N: usize> SampleKeys<N> {
+    /// Lanes of no path yet.
+    pub fn new() -> Self {
+        Self { keys: [0; N], indices: [0; N] }
     }
 
-    /// The numbers of sample `samples[i]` of pixel (`x[i]`, `y[i]`), as [`Sampler::path`].
+    /// The keys of sample `samples[i]` of pixel (`x[i]`, `y[i]`), as [`Sampler::path`].
     #[inline(always)]
     pub fn begin(&mut self, sampler: &Sampler, [x, y]: &[[u32; N]; 2], samples: &[u64; N]) {
-        self.kind = sampler.kind;
         for i in 0..N {
-            let path = sampler.path(x[i], y[i], samples[i]);
-            self.keys[i] = path.key;
-            self.indices[i] = path.index;
+            self.set_lane(i, sampler.path(x[i], y[i], samples[i]));
         }
     }
 
-    /// The path of one lane; its strategy is that of all lanes.
+    /// The key of one lane.
     #[inline(always)]
-    pub fn lane(&self, i: usize) -> PathSampler {
-        PathSampler { key: self.keys[i], index: self.indices[i], kind: self.kind }
+    pub fn lane(&self, i: usize) -> SampleKey {
+        SampleKey { key: self.keys[i], index: self.indices[i] }
     }
 
-    /// Sets the path of one lane; all lanes must have one strategy.
+    /// Sets the key of one lane.
     #[inline(always)]
-    pub fn set_lane(&mut self, i: usize, path: PathSampler) {
+    pub fn set_lane(&mut self, i: usize, path: SampleKey) {
         self.keys[i] = path.key;
         self.indices[i] = path.index;
-        self.kind = path.kind;
     }
 
-    /// [`PathSampler::two`] of every lane i, for `dimension(i)`.
+    /// [`Sampler::two`] of every lane i, for `dimension(i)`.
     #[inline(always)]
-    pub fn two(&self, dimension: impl Fn(usize) -> Dimension, numbers: &mut [[f32; N]; 2]) {
-        // The strategy is chosen outside the loop, so that each loop is straight.
-        match self.kind {
-            SamplerKind::Sobol => self.two_of(SamplerKind::Sobol, dimension, numbers),
-            SamplerKind::Independent => self.two_of(SamplerKind::Independent, dimension, numbers),
-        }
-    }
-
-    #[inline(always)]
-    fn two_of(
+    pub fn two(
         &self,
-        kind: SamplerKind,
+        sampler: &Sampler,
         dimension: impl Fn(usize) -> Dimension,
         [x, y]: &mut [[f32; N]; 2],
     ) {
-        for i in 0..N {
-            let path = PathSampler { key: self.keys[i], index: self.indices[i], kind };
-            [x[i], y[i]] = path.two(dimension(i));
+        // The strategy is chosen outside the loops, so that each is straight.
+        match sampler.source {
+            Source::Sobol => {
+                for i in 0..N {
+                    let path = self.lane(i);
+                    let pair = sobol::owen_sobol_2d(path.index, path.seed(dimension(i)));
+                    [x[i], y[i]] = pair.map(hash::unit_f32);
+                }
+            }
+            Source::Random => {
+                for i in 0..N {
+                    let pair = split(self.lane(i).random(dimension(i)));
+                    [x[i], y[i]] = pair.map(hash::unit_f32);
+                }
+            }
+            _ => {
+                for i in 0..N {
+                    [x[i], y[i]] = sampler.two(self.lane(i), dimension(i));
+                }
+            }
         }
+    }
+}
+
+impl<const N: usize> Default for SampleKeys<N> {
+    fn default() -> Self {
+        Self::new()
     }
 }

@@ -10,12 +10,14 @@ mod lanes;
 mod piecewise;
 mod rng;
 mod sampler;
-mod sobol;
+mod strategy;
+pub mod voronoi;
 pub mod warp;
 
 pub use alias::AliasTable;
 pub use dimension::Dimension;
-pub use lanes::PathSamplers;
+pub use lanes::SampleKeys;
 pub use piecewise::{PiecewiseConstant1d, PiecewiseConstant2d};
 pub use rng::CounterRng;
-pub use sampler::{PathSampler, REPLICATES, Sampler, SamplerKind};
+pub use sampler::{REPLICATES, SampleKey, Sampler};
+pub use strategy::{Fraction, PointSet, Strategy, to_f64};

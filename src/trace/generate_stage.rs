@@ -5,7 +5,7 @@ use super::{BlockPaths, CameraStart, RayKind, Tracer};
 use crate::accel::Accelerator;
 use crate::camera::CameraRays;
 use crate::os::{Isa, Kernel};
-use crate::sampling::{Dimension, PathSamplers, Sampler, SamplerKind};
+use crate::sampling::{Dimension, SampleKeys, Sampler};
 
 /// Paths that a kernel starts together.
 pub(super) const LANES: usize = 64;
@@ -19,7 +19,7 @@ pub(super) struct Starts {
     samples: [u64; LANES],
     /// The cell that each pixel is watched for, or [`Path::UNWATCHED`].
     cells: [u32; LANES],
-    numbers: PathSamplers<LANES>,
+    keys: SampleKeys<LANES>,
     /// Where on the film, in pixels, and with what weight.
     film: [[f32; LANES]; 2],
     weights: [f32; LANES],
@@ -35,7 +35,7 @@ impl Starts {
             pixels: [[0; LANES]; 2],
             samples: [0; LANES],
             cells: [Path::UNWATCHED; LANES],
-            numbers: PathSamplers::new(&Sampler::new(SamplerKind::default(), 0)),
+            keys: SampleKeys::new(),
             film: [[0.0; LANES]; 2],
             weights: [0.0; LANES],
             lens: [[0.5; LANES]; 2],
@@ -68,8 +68,8 @@ impl Starts {
     }
 
     /// Draws points on the lens, in place of its middle.
-    pub(super) fn lens(&mut self, isa: Isa) {
-        isa.run(LensKernel { starts: self });
+    pub(super) fn lens(&mut self, sampler: &Sampler, isa: Isa) {
+        isa.run(LensKernel { sampler, starts: self });
     }
 
     /// Makes the rays.
@@ -81,10 +81,10 @@ impl Starts {
     #[inline]
     pub(super) fn paths<A>(&self, tracer: &Tracer<'_, A>) -> impl Iterator<Item = Path> {
         (0..self.count).map(|i| {
-            let sampler = self.numbers.lane(i);
+            let key = self.keys.lane(i);
             let mut camera = self.rays.lane(i);
-            camera.ray.id = tracer.ray_id(&sampler, 0, RayKind::Path);
-            let start = CameraStart { sampler, weight: self.weights[i], camera };
+            camera.ray.id = tracer.ray_id(key, 0, RayKind::Path);
+            let start = CameraStart { key, weight: self.weights[i], camera };
             let pixel = [self.pixels[0][i], self.pixels[1][i]];
             Path::begin(&start, pixel, self.samples[i], self.cells[i])
         })
@@ -99,10 +99,10 @@ struct FilmKernel<'a, 't, A> {
 impl<A: Accelerator> Kernel for FilmKernel<'_, '_, A> {
     #[inline(always)]
     fn run(self) {
-        let Starts { pixels, samples, numbers, film, weights, .. } = self.starts;
+        let Starts { pixels, samples, keys, film, weights, .. } = self.starts;
         let mut pairs = [[0.5; LANES]; 2];
-        numbers.begin(&self.tracer.sampler, pixels, samples);
-        numbers.two(|_| Dimension::Film, &mut pairs);
+        keys.begin(&self.tracer.sampler, pixels, samples);
+        keys.two(&self.tracer.sampler, |_| Dimension::Film, &mut pairs);
         self.tracer.filter.sample_lanes(&pairs, film, weights);
         for (film, pixels) in film.iter_mut().zip(pixels) {
             for (film, &mut pixel) in film.iter_mut().zip(pixels) {
@@ -113,13 +113,14 @@ impl<A: Accelerator> Kernel for FilmKernel<'_, '_, A> {
 }
 
 struct LensKernel<'a> {
+    sampler: &'a Sampler,
     starts: &'a mut Starts,
 }
 
 impl Kernel for LensKernel<'_> {
     #[inline(always)]
     fn run(self) {
-        self.starts.numbers.two(|_| Dimension::Lens, &mut self.starts.lens);
+        self.starts.keys.two(self.sampler, |_| Dimension::Lens, &mut self.starts.lens);
     }
 }
 

@@ -36,7 +36,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
             let path = &self.slots[vertex.slot as usize];
             let bounce = path.bounce;
             let select = match pipeline.light_choice {
-                true => path.sampler.one(Dimension::LightSelect { bounce }),
+                true => self.tracer.sampler.one(path.key, Dimension::LightSelect { bounce }),
                 false => 0.0,
             };
             let position = self.positions[entry.vertex as usize];
@@ -74,7 +74,7 @@ impl<A: Accelerator> GroupStage for LightStage<'_, '_, A> {
                 };
                 gain *= transmittance(absorption, (end - origin).length());
             }
-            ray.id = self.tracer.ray_id(&path.sampler, bounce, RayKind::Shadow);
+            ray.id = self.tracer.ray_id(path.key, bounce, RayKind::Shadow);
             self.shadow_rays.push_if(adds, ray);
             self.shadow_gains.push_if(adds, (vertex.slot, class, gain));
         }

@@ -27,7 +27,7 @@ use crate::ledger::{Class, Events, Watch};
 use crate::light::LightKind;
 use crate::math::{Rgb, Vec3, fun};
 use crate::plan::Plan;
-use crate::sampling::{Dimension, PathSampler, Sampler};
+use crate::sampling::{Dimension, SampleKey, Sampler};
 use crate::world::{SurfaceInteraction, World};
 
 /// Everything a path needs to know; shared by all workers.
@@ -154,24 +154,25 @@ const fn event_of(kind: LobeKind) -> Events {
 impl<A: Accelerator> Tracer<'_, A> {
     /// The start of a path: its camera ray with the cone around it, its numbers, its filter weight.
     pub(crate) fn camera_ray(&self, pixel: [u32; 2], sample: u64) -> CameraStart {
-        let sampler = self.sampler.path(pixel[0], pixel[1], sample);
-        let (offset, weight) = self.filter.sample(sampler.two(Dimension::Film));
+        let key = self.sampler.path(pixel[0], pixel[1], sample);
+        let (offset, weight) = self.filter.sample(self.sampler.two(key, Dimension::Film));
         let film = [0, 1].map(|k| offset[k] + (pixel[k] as f32 + 0.5));
         // The middle of the lens is a pinhole.
         let lens = match self.plan.pipeline.lens {
-            true => sampler.two(Dimension::Lens),
+            true => self.sampler.two(key, Dimension::Lens),
             false => [0.5; 2],
         };
         let mut camera = self.camera.ray(film, lens);
-        camera.ray.id = self.ray_id(&sampler, 0, RayKind::Path);
-        CameraStart { sampler, weight, camera }
+        camera.ray.id = self.ray_id(key, 0, RayKind::Path);
+        CameraStart { key, weight, camera }
     }
 }
 
 impl<'a, A> Tracer<'a, A> {
     /// The same paths on another accelerator, built from the same geometry.
     pub fn on<B>(&self, accelerator: &'a B) -> Tracer<'a, B> {
-        let Self { world, camera, filter, sampler, plan, .. } = *self;
+        let Self { world, camera, filter, plan, .. } = *self;
+        let sampler = self.sampler.clone();
         Tracer { world, accelerator, camera, filter, sampler, plan }
     }
 
@@ -186,8 +187,8 @@ impl<'a, A> Tracer<'a, A> {
 
     /// What hit filters know a ray by; 0 where no filter will ask.
     #[inline]
-    fn ray_id(&self, numbers: &PathSampler, bounce: u32, kind: RayKind) -> u32 {
-        if self.plan.pipeline.hit_filter { numbers.ray_id(bounce, kind as u32) } else { 0 }
+    fn ray_id(&self, key: SampleKey, bounce: u32, kind: RayKind) -> u32 {
+        if self.plan.pipeline.hit_filter { key.ray_id(bounce, kind as u32) } else { 0 }
     }
 }
 
@@ -205,7 +206,7 @@ struct Vertex {
 
 /// What [`Tracer::camera_ray`] starts a path with.
 pub(crate) struct CameraStart {
-    pub(crate) sampler: PathSampler,
+    pub(crate) key: SampleKey,
     pub(crate) weight: f32,
     pub(crate) camera: CameraRay,
 }

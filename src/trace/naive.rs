@@ -11,7 +11,7 @@ use crate::geometry::{Hit, Ray};
 use crate::ledger::Events;
 use crate::math::{Rgb, Vec3, fun};
 use crate::plan::Pipeline;
-use crate::sampling::{Dimension, PathSampler};
+use crate::sampling::{Dimension, SampleKey};
 
 /// What a ray carries along in the recursion.
 #[derive(Clone)]
@@ -44,14 +44,14 @@ pub fn radiance<A: Accelerator, F: HitFilter>(
         cone: [start.camera.initial_width, start.camera.spread],
         absorption: Rgb::BLACK,
     };
-    incoming(tracer, filter, &start.sampler, start.camera.ray, state) * start.weight
+    incoming(tracer, filter, start.key, start.camera.ray, state) * start.weight
 }
 
 /// Radiance arriving along a ray.
 fn incoming<A: Accelerator, F: HitFilter>(
     tracer: &Tracer<'_, A>,
     filter: &F,
-    numbers: &PathSampler,
+    key: SampleKey,
     ray: Ray,
     mut state: State,
 ) -> Rgb {
@@ -103,8 +103,8 @@ fn incoming<A: Accelerator, F: HitFilter>(
     let bsdf = world.bsdf(&at);
     let wo = at.frame.local_from_world(-ray.direction);
     if !bsdf.is_delta() && pipeline.light_sampling {
-        let select = numbers.one(Dimension::LightSelect { bounce });
-        let position = numbers.two(Dimension::LightPosition { bounce });
+        let select = tracer.sampler.one(key, Dimension::LightSelect { bounce });
+        let position = tracer.sampler.two(key, Dimension::LightPosition { bounce });
         if let Some(light) = lights.sample(world, at.point, select, position) {
             let wi = at.frame.local_from_world(light.direction);
             let value = bsdf.evaluate(wo, wi);
@@ -114,7 +114,7 @@ fn incoming<A: Accelerator, F: HitFilter>(
                 Some(end) => Ray::between(origin, end),
                 None => Ray::new(origin, light.direction),
             };
-            let id = tracer.ray_id(numbers, bounce, RayKind::Shadow);
+            let id = tracer.ray_id(key, bounce, RayKind::Shadow);
             let mut blocked = [false];
             tracer.accelerator.occluded(&[Ray { id, ..segment }], filter, &mut blocked);
             let mut history = state.history.clone();
@@ -133,8 +133,8 @@ fn incoming<A: Accelerator, F: HitFilter>(
     }
 
     // Scattered light.
-    let lobe = numbers.one(Dimension::ScatterLobe { bounce });
-    let direction = numbers.two(Dimension::ScatterDirection { bounce });
+    let lobe = tracer.sampler.one(key, Dimension::ScatterLobe { bounce });
+    let direction = tracer.sampler.two(key, Dimension::ScatterDirection { bounce });
     let Some(sample) = bsdf.sample(wo, lobe, direction) else {
         return transmitted * radiance;
     };
@@ -145,7 +145,7 @@ fn incoming<A: Accelerator, F: HitFilter>(
     let throughput = state.throughput * transmitted * sample.weight;
     let eta_scale = state.eta_scale * sample.eta_scale;
     let survival = survival_probability(throughput, eta_scale, bounce);
-    if survival < 1.0 && numbers.one(Dimension::Roulette { bounce }) >= survival {
+    if survival < 1.0 && tracer.sampler.one(key, Dimension::Roulette { bounce }) >= survival {
         return transmitted * radiance;
     }
     let mut history = state.history.clone();
@@ -160,9 +160,9 @@ fn incoming<A: Accelerator, F: HitFilter>(
         cone: [state.cone[0], state.cone[1] + spread],
         absorption: medium(sample.wi),
     };
-    let id = tracer.ray_id(numbers, bounce + 1, RayKind::Path);
+    let id = tracer.ray_id(key, bounce + 1, RayKind::Path);
     let ray = Ray { id, ..Ray::new(at.origin_towards(wi), wi) };
-    let scattered = incoming(tracer, filter, numbers, ray, next);
+    let scattered = incoming(tracer, filter, key, ray, next);
     transmitted * (radiance + sample.weight * scattered * (1.0 / survival))
 }
 

@@ -5,12 +5,12 @@ use super::batch::Batch;
 use super::generate_stage::LANES;
 use super::path::Path;
 use crate::os::{Isa, Kernel};
-use crate::sampling::{Dimension, PathSamplers, Sampler, SamplerKind};
+use crate::sampling::{Dimension, SampleKeys, Sampler};
 
 /// Pairs of numbers in [0, 1), one for each vertex of a batch.
 pub(super) struct Pairs {
     pairs: Batch<[f32; 2]>,
-    samplers: PathSamplers<LANES>,
+    keys: SampleKeys<LANES>,
     bounces: [u32; LANES],
     drawn: [[f32; LANES]; 2],
 }
@@ -20,7 +20,7 @@ impl Pairs {
     pub(super) fn new(capacity: usize) -> Self {
         Self {
             pairs: Batch::new(capacity),
-            samplers: PathSamplers::new(&Sampler::new(SamplerKind::default(), 0)),
+            keys: SampleKeys::new(),
             bounces: [0; LANES],
             drawn: [[0.0; LANES]; 2],
         }
@@ -30,6 +30,7 @@ impl Pairs {
     pub(super) fn draw(
         &mut self,
         isa: Isa,
+        sampler: &Sampler,
         vertices: &[Vertex],
         slots: &[Path],
         dimension: impl Fn(u32) -> Dimension + Copy,
@@ -38,11 +39,11 @@ impl Pairs {
         for vertices in vertices.chunks(LANES) {
             for (i, vertex) in vertices.iter().enumerate() {
                 let path = &slots[vertex.slot as usize];
-                self.samplers.set_lane(i, path.sampler);
+                self.keys.set_lane(i, path.key);
                 self.bounces[i] = path.bounce;
             }
-            let Self { samplers, bounces, drawn, .. } = &mut *self;
-            isa.run(PairsKernel { samplers, bounces, dimension, drawn });
+            let Self { keys, bounces, drawn, .. } = &mut *self;
+            isa.run(PairsKernel { sampler, keys, bounces, dimension, drawn });
             for i in 0..vertices.len() {
                 self.pairs.push([self.drawn[0][i], self.drawn[1][i]]);
             }
@@ -52,7 +53,8 @@ impl Pairs {
 }
 
 struct PairsKernel<'a, D> {
-    samplers: &'a PathSamplers<LANES>,
+    sampler: &'a Sampler,
+    keys: &'a SampleKeys<LANES>,
     bounces: &'a [u32; LANES],
     dimension: D,
     drawn: &'a mut [[f32; LANES]; 2],
@@ -61,7 +63,7 @@ struct PairsKernel<'a, D> {
 impl<D: Fn(u32) -> Dimension> Kernel for PairsKernel<'_, D> {
     #[inline(always)]
     fn run(self) {
-        let Self { samplers, bounces, dimension, drawn } = self;
-        samplers.two(|i| dimension(bounces[i]), drawn);
+        let Self { sampler, keys, bounces, dimension, drawn } = self;
+        keys.two(sampler, |i| dimension(bounces[i]), drawn);
     }
 }

@@ -7,7 +7,7 @@ use crate::ledger::{Class, Events, Ledger};
 use crate::light::LightKind;
 use crate::math::Rgb;
 use crate::plan::Pipeline;
-use crate::sampling::PathSampler;
+use crate::sampling::SampleKey;
 
 /// State of one path; it stays in its slot while it lives.
 #[derive(Clone, Copy, Debug, Default)]
@@ -18,8 +18,8 @@ pub(super) struct Path {
     pub(super) throughput: Rgb,
     /// Radiance gathered so far.
     pub(super) radiance: Rgb,
-    /// Its random numbers.
-    pub(super) sampler: PathSampler,
+    /// What its random numbers are drawn with.
+    pub(super) key: SampleKey,
     /// Vertices so far: the next hit is vertex number `bounce`.
     pub(super) bounce: u32,
     /// Density per solid angle with which the ray's direction was scattered.
@@ -132,7 +132,7 @@ impl Path {
             ray: start.camera.ray,
             throughput: Rgb::WHITE,
             radiance: Rgb::BLACK,
-            sampler: start.sampler,
+            key: start.key,
             bounce: 0,
             pdf_solid_angle: 0.0,
             // No light is sampled for the camera: what it sees counts in full.

@@ -46,7 +46,7 @@ fn scatter<M: Scatter, A: Accelerator>(
 ) -> bool {
     let bounce = path.bounce;
     let lobe = match M::HAS_LOBES {
-        true => path.sampler.one(Dimension::ScatterLobe { bounce }),
+        true => tracer.sampler.one(path.key, Dimension::ScatterLobe { bounce }),
         false => 0.0,
     };
     let Some(sample) = model.sample(vertex.wo, lobe, direction) else {
@@ -75,6 +75,6 @@ fn scatter<M: Scatter, A: Accelerator>(
     path.eta_scale *= sample.eta_scale;
     path.bounce += 1;
     path.ray = Ray::new(vertex.at.origin_towards(wi), wi);
-    path.ray.id = tracer.ray_id(&path.sampler, path.bounce, RayKind::Path);
+    path.ray.id = tracer.ray_id(path.key, path.bounce, RayKind::Path);
     true
 }

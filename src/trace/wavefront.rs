@@ -26,7 +26,7 @@ use crate::geometry::{Hit, Ray};
 use crate::ledger::{Class, Clock, Ledger, Stage};
 use crate::math::Rgb;
 use crate::os::Isa;
-use crate::sampling::Dimension;
+use crate::sampling::{Dimension, Sampler};
 
 /// The arrays of one worker. They are allocated once; the bounce loop allocates nothing.
 pub struct Wavefront {
@@ -126,7 +126,7 @@ impl Wavefront {
                 }
                 self.scatter(tracer, &mut clock);
                 if pipeline.roulette {
-                    self.roulette(&mut clock);
+                    self.roulette(&tracer.sampler, &mut clock);
                 }
             }
             self.accumulate(&mut sink, &mut clock);
@@ -150,7 +150,7 @@ impl Wavefront {
             begun.film(tracer, *isa);
             if tracer.plan.pipeline.lens {
                 clock.charge(ledger, Stage::Generate);
-                begun.lens(*isa);
+                begun.lens(&tracer.sampler, *isa);
                 clock.lap(ledger, Stage::Lens, count);
             }
             begun.rays(tracer, *isa);
@@ -191,7 +191,8 @@ impl Wavefront {
         self.shadow_rays.clear();
         self.shadow_gains.clear();
         let position = |bounce| Dimension::LightPosition { bounce };
-        let positions = self.pairs.draw(self.isa, &self.vertices, &self.slots, position);
+        let positions =
+            self.pairs.draw(self.isa, &tracer.sampler, &self.vertices, &self.slots, position);
         self.groups.each(&mut LightStage {
             tracer,
             vertices: &self.vertices,
@@ -236,7 +237,8 @@ impl Wavefront {
     /// Chooses where each path goes on.
     fn scatter<A: Accelerator>(&mut self, tracer: &Tracer<'_, A>, clock: &mut Clock) {
         let direction = |bounce| Dimension::ScatterDirection { bounce };
-        let directions = self.pairs.draw(self.isa, &self.vertices, &self.slots, direction);
+        let directions =
+            self.pairs.draw(self.isa, &tracer.sampler, &self.vertices, &self.slots, direction);
         self.groups.each(&mut ScatterStage {
             tracer,
             vertices: &self.vertices,
@@ -249,7 +251,7 @@ impl Wavefront {
     }
 
     /// Ends dim paths at random, and gives the survivors the energy of those that ended.
-    fn roulette(&mut self, clock: &mut Clock) {
+    fn roulette(&mut self, sampler: &Sampler, clock: &mut Clock) {
         let count = self.active.len();
         let (slots, finished) = (&mut self.slots, &mut self.finished);
         self.active.retain(|&slot| {
@@ -257,7 +259,7 @@ impl Wavefront {
             let bounce = path.bounce - 1;
             let survival = survival_probability(path.throughput, path.eta_scale, bounce);
             if survival < 1.0 {
-                if path.sampler.one(Dimension::Roulette { bounce }) >= survival {
+                if sampler.one(path.key, Dimension::Roulette { bounce }) >= survival {
                     finished.push(slot);
                     return false;
                 }

@@ -107,11 +107,7 @@ fn an_unknown_name_gets_the_names_there_are_and_the_likeliest() {
             "all,no-glosy",
             ["unknown effects `glosy`", "did you mean `glossy`?", "`mirror`"],
         ),
-        (
-            "--sampler",
-            "sobel",
-            ["unknown sampler `sobel`", "did you mean `sobol`?", "`independent`"],
-        ),
+        ("--sampler", "sobel", ["unknown sampler `sobel`", "did you mean `sobol`?", "`random`"]),
         ("--filter", "bax:2", ["unknown filter `bax`", "did you mean `box`?", "`lanczos`"]),
         ("--tonemap", "aegx", ["unknown tone map `aegx`", "did you mean `agx`?", "`reinhard`"]),
         ("--aov", "depth,normals", ["unknown AOV `normals`", "did you mean `normal`?", "`uv`"]),

@@ -7,7 +7,7 @@ use crate::support::scenes::{Builder, cornell, cornell_shot, zoo, zoo_shot};
 use crate::support::shot::Shot;
 use glint::film::Region;
 use glint::os::Isa;
-use glint::sampling::SamplerKind;
+use glint::sampling::Strategy;
 use glint::world::World;
 
 fn scenes() -> [(&'static str, World, Shot); 2] {
@@ -89,7 +89,7 @@ fn worst_difference(world: &World, shot: &Shot) -> f32 {
 #[test]
 fn wavefront_equals_naive_path_by_path() {
     for (name, world, shot) in scenes() {
-        for kind in [SamplerKind::Sobol, SamplerKind::Independent] {
+        for kind in [Strategy::Sobol, Strategy::Random] {
             let worst = worst_difference(&world, &Shot { kind, ..shot.clone() });
             assert!(worst < 1e-5, "{name} {kind:?}: {worst}");
         }

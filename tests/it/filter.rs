@@ -6,7 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may unwrap, and so may its helpers")]
 
 use glint::filter::{Filter, FilterKind, FilterSampler};
-use glint::sampling::{CounterRng, Dimension, Sampler, SamplerKind};
+use glint::sampling::{CounterRng, Dimension, Sampler, Strategy};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 const SAMPLES: usize = 1_000_000;
@@ -128,15 +128,15 @@ fn weights_reproduce_the_signed_filter() {
 
 /// (RMS difference from 1, mean) over 1024 pixels of the mean weight of `samples` samples of the real sampler.
 fn furnace(samples: u64, weight: impl Fn([f32; 2], f32) -> f32) -> (f64, f64) {
-    let sampler = Sampler::new(SamplerKind::Sobol, 0);
+    let sampler = Sampler::new(Strategy::Sobol, 0, samples);
     let (mut squares, mut sum) = (0.0, 0.0);
     for pixel in 0..1024_u32 {
         let total: f64 = (0..samples)
             .map(|s| {
                 let path = sampler.path(pixel % 32, pixel / 32, s);
                 f64::from(weight(
-                    path.two(Dimension::Film),
-                    path.one(Dimension::Roulette { bounce: 0 }),
+                    sampler.two(path, Dimension::Film),
+                    sampler.one(path, Dimension::Roulette { bounce: 0 }),
                 ))
             })
             .sum();

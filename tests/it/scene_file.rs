@@ -75,7 +75,7 @@ fn a_model_alone_is_placed_once() {
 fn values_arrive_as_written() {
     let scene = load(
         "film = { size = [640, 360], filter = 'gaussian:2', exposure = -1.5, tonemap = 'agx' }
-         render = { spp = 64, max_depth = 9, sampler = 'independent', seed = 7 }
+         render = { spp = 64, max_depth = 9, sampler = 'random', seed = 7 }
          [camera.b]
          from = [1, 2, 3]
          to = [1, 2, -1]
@@ -92,7 +92,7 @@ fn values_arrive_as_written() {
     let settings = &scene.settings;
     assert_eq!(settings.size, Some([640, 360]));
     assert_eq!((settings.samples_per_pixel, settings.max_depth), (Some(64), Some(9)));
-    assert_eq!((settings.sampler.as_deref(), settings.seed), (Some("independent"), Some(7)));
+    assert_eq!((settings.sampler.as_deref(), settings.seed), (Some("random"), Some(7)));
     assert_eq!((settings.filter.as_deref(), settings.exposure), (Some("gaussian:2"), Some(-1.5)));
     // Cameras keep the order of the file, and the focus is on `to`.
     let expected = Camera {

@@ -5,7 +5,7 @@ use super::value::{Count, Finite, List};
 use crate::error::Result;
 use crate::filter::Filter;
 use crate::image::ToneMap;
-use crate::sampling::SamplerKind;
+use crate::sampling::Strategy;
 use crate::scene::{Effects, SceneSettings};
 use serde::Deserialize;
 use toml::Spanned;
@@ -52,7 +52,10 @@ pub(super) fn settings(
         let parsed = effects.get_ref().parse::<Effects>();
         parsed.map_err(|message| source.error(effects.span(), message))?;
     }
-    check(&render.sampler, "sampler", &SamplerKind::ALL.map(|sampler| sampler.0))?;
+    if let Some(sampler) = &render.sampler {
+        Strategy::sampler(sampler.get_ref())
+            .map_err(|e| source.error(sampler.span(), e.to_string()))?;
+    }
     if let Some(filter) = &film.filter {
         Filter::parse(filter.get_ref()).map_err(|e| source.error(filter.span(), e.to_string()))?;
     }

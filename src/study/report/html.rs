@@ -47,6 +47,11 @@ impl Html {
         self.text
     }
 
+    /// What there is, as a part of something else or a file of another kind.
+    pub(super) fn into_text(self) -> String {
+        self.text
+    }
+
     /// Constant markup, as it is.
     pub(super) fn markup(&mut self, markup: &'static str) -> &mut Self {
         self.text += markup;

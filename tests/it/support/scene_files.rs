@@ -9,7 +9,7 @@ use glint::filter::{Filter, FilterSampler};
 use glint::load::load_scene;
 use glint::plan::{Pipeline, Plan, Wishes};
 use glint::render::{RenderJob, Rendered, render};
-use glint::sampling::{Sampler, SamplerKind};
+use glint::sampling::{Sampler, Strategy};
 use glint::scene::{self, Effects};
 use glint::trace::{Tracer, Wavefront};
 use glint::world::World;
@@ -127,7 +127,7 @@ impl FileScene {
     ) -> Rendered {
         let camera = world.camera(&self.cameras[0], small.size).expect("a camera");
         let filter = FilterSampler::new(Filter::default());
-        let sampler = Sampler::new(SamplerKind::Sobol, small.seed);
+        let sampler = Sampler::new(Strategy::Sobol, small.seed, small.spp);
         let tracer = Tracer { world, accelerator, camera: &camera, filter: &filter, sampler, plan };
         let job = RenderJob {
             region: Region::full(small.size),

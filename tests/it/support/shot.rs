@@ -11,7 +11,7 @@ use glint::ledger::Watch;
 use glint::math::{DVec3, Rgb};
 use glint::plan::{Plan, Wishes};
 use glint::render::{RenderJob, Rendered, render};
-use glint::sampling::{Sampler, SamplerKind};
+use glint::sampling::{Sampler, Strategy};
 use glint::scene::{self, Effects, Projection};
 use glint::trace::{Block, PixelSample, Tracer, Wavefront, naive};
 use glint::world::{CutOuts, World};
@@ -25,7 +25,7 @@ pub(crate) struct Shot {
     pub(crate) spp: u64,
     pub(crate) seed: u64,
     pub(crate) max_depth: u32,
-    pub(crate) kind: SamplerKind,
+    pub(crate) kind: Strategy,
     pub(crate) batch: usize,
     pub(crate) threads: usize,
     pub(crate) region: Option<Region>,
@@ -42,7 +42,7 @@ impl Shot {
             spp,
             seed: 0,
             max_depth: u32::MAX,
-            kind: SamplerKind::Sobol,
+            kind: Strategy::Sobol,
             batch: Wavefront::DEFAULT_BATCH,
             threads: 2,
             region: None,
@@ -110,7 +110,7 @@ impl Shot {
             accelerator,
             camera: &camera,
             filter: &filter,
-            sampler: Sampler::new(self.kind, self.seed),
+            sampler: Sampler::new(self.kind, self.seed, self.spp),
             plan: &plan,
         })
     }

@@ -1,0 +1,124 @@
+//! Which sets `glint samples` is about: strategies by name, and files of points.
+
+use crate::cli::progress::{BAR, style};
+use crate::error::{Error, Result, unknown_name};
+use crate::lab::exhibit::Exhibit;
+use crate::lab::measure::points_from_text;
+use crate::sampling::Strategy;
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use std::path::{Path, PathBuf};
+
+/// Options that name sets.
+#[derive(Debug, Args)]
+pub(super) struct Sets {
+    /// Files of points: two numbers in [0, 1) a line; # begins a comment
+    files: Vec<PathBuf>,
+    /// Strategies: all, or a list of grid, random, jittered, n-rooks, multi-jittered, correlated-multi-jittered, dart-throwing,
+    /// poisson-disk, centroidal-voronoi, bounded-voronoi, blue-noise, halton, hammersley, sobol and pmj02
+    /// [default: all, unless there are files]
+    #[arg(long, value_name = "NAME,...", value_parser = strategies)]
+    sampler: Option<Strategies>,
+    /// Points of a set
+    #[arg(short = 'n', long, value_name = "N", default_value_t = 256,
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(Strategy::MAX_COUNT)))]
+    pub(super) count: u32,
+    /// Random seed
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) seed: u64,
+    /// Print the measures as JSON to standard output
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Print nothing but errors and what was asked for
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+/// What `--sampler` names.
+#[derive(Clone, Debug)]
+struct Strategies {
+    list: Vec<Strategy>,
+    /// Whether those that have no set of the wanted size are left out, not refused.
+    is_all: bool,
+}
+
+fn strategies(text: &str) -> std::result::Result<Strategies, String> {
+    let known = || Strategy::ALL.iter().copied().filter(|strategy| strategy.has_sets());
+    if text == "all" {
+        return Ok(Strategies { list: known().collect(), is_all: true });
+    }
+    let named = |name: &str| {
+        let found = known().find(|strategy| strategy.name() == name);
+        let names = known().map(Strategy::name).chain(["all"]);
+        found.ok_or_else(|| unknown_name("sampler", name, names))
+    };
+    let list: std::result::Result<_, String> = text.split(',').map(|name| named(name.trim())).collect();
+    Ok(Strategies { list: list?, is_all: false })
+}
+
+impl Sets {
+    /// The strategies that are wanted and have sets of the wanted size.
+    ///
+    /// # Errors
+    /// A usage error for a strategy named that has none.
+    pub(super) fn strategies(&self) -> Result<Vec<Strategy>> {
+        let everything = || strategies("all").map_err(Error::Usage);
+        let wanted = match &self.sampler {
+            Some(wanted) => wanted.clone(),
+            None if self.files.is_empty() => everything()?,
+            None => return Ok(Vec::new()),
+        };
+        let mut list = wanted.list;
+        if wanted.is_all {
+            list.retain(|strategy| strategy.allows(self.count));
+        }
+        list.iter().try_for_each(|strategy| strategy.check(self.count))?;
+        Ok(list)
+    }
+
+    /// Every set, measured.
+    ///
+    /// # Errors
+    /// As [`Self::strategies`]; where a file cannot be read or is no set of points.
+    pub(super) fn exhibits(&self) -> Result<Vec<Exhibit>> {
+        let strategies = self.strategies()?;
+        let bar = self.bar(self.files.len() + strategies.len());
+        let mut exhibits = Vec::new();
+        for file in &self.files {
+            exhibits.push(Exhibit::of_points(&file.display().to_string(), points(file)?));
+            bar.inc(1);
+        }
+        for strategy in strategies {
+            exhibits.push(Exhibit::of_strategy(strategy, self.count, self.seed)?);
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        Ok(exhibits)
+    }
+
+    /// A bar of so many steps; nothing where it is quiet or there is no terminal.
+    pub(super) fn bar(&self, steps: usize) -> ProgressBar {
+        bar(steps, self.quiet)
+    }
+}
+
+/// A bar of so many steps.
+pub(super) fn bar(steps: usize, quiet: bool) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let target = ProgressDrawTarget::stderr_with_hz(5);
+    let bar = ProgressBar::with_draw_target(Some(steps as u64), target);
+    bar.set_style(style(BAR));
+    bar
+}
+
+fn points(file: &Path) -> Result<Vec<[f64; 2]>> {
+    let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, e))?;
+    let points = points_from_text(&text, &file.display().to_string())?;
+    if points.is_empty() {
+        let message = format!("{}: there are no points in it", file.display());
+        return Err(Error::Usage(message));
+    }
+    Ok(points)
+}

@@ -1,0 +1,85 @@
+//! `glint samples measure`: discrepancies, distances, projections, spectra and errors of integration, as a table or JSON.
+
+use super::exhibits::Sets;
+use crate::cli::{DONE, report};
+use crate::error::Result;
+use crate::lab::exhibit::{Slopes, slopes};
+use crate::lab::listing;
+use crate::lab::measure::Measures;
+use clap::Args;
+use serde::Serialize;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  glint samples measure --sampler all -n 1024
+  glint samples measure --sampler jittered,sobol -n 256 --slopes
+  glint samples measure points.txt --json > measures.json";
+
+/// `glint samples measure`.
+#[derive(Debug, Args)]
+pub(super) struct Measure {
+    #[command(flatten)]
+    sets: Sets,
+    /// Also integrate a disc, a Gaussian, a ramp and the zone plate with ever more points, up to -n: errors and exponents
+    #[arg(long)]
+    slopes: bool,
+}
+
+/// What `--json` prints.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+struct Report {
+    /// Of glint.
+    version: &'static str,
+    sets: Vec<Measures>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    slopes: Vec<Slopes>,
+}
+
+/// Sets of each size that errors are the mean of.
+const SEEDS: u64 = 16;
+
+/// Measures as told; the exit code.
+pub(super) fn run(args: &Measure) -> Result<u8> {
+    let Measure { sets, .. } = args;
+    let measured: Vec<Measures> = sets.exhibits()?.into_iter().map(|e| e.measures).collect();
+    let mut fitted = Vec::new();
+    if args.slopes {
+        let strategies = sets.strategies()?;
+        let counts: Vec<u32> = (0..5).rev().map(|k| sets.count >> (2 * k)).filter(|n| *n > 0).collect();
+        let bar = sets.bar(strategies.len());
+        for strategy in strategies {
+            fitted.push(slopes(strategy, &counts, SEEDS)?);
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+    }
+    if sets.json {
+        let version = env!("CARGO_PKG_VERSION");
+        report::json(&Report { version, sets: measured, slopes: fitted })?;
+        return Ok(DONE);
+    }
+    report::print(&listing::table(measured.iter()))?;
+    if !fitted.is_empty() {
+        report::print(&slope_table(&fitted))?;
+    }
+    Ok(DONE)
+}
+
+/// Errors of integration for the largest count, and exponents.
+fn slope_table(fitted: &[Slopes]) -> String {
+    let mut text = String::from("\nintegration: RMS error with the most points, and the exponent of n that it falls with\n");
+    text += &format!("{:26}", "set");
+    for (integrand, ..) in fitted.first().map_or(&[][..], |slopes| &slopes.integrands) {
+        text += &format!("  {integrand:>17}");
+    }
+    for slopes in fitted {
+        text += &format!("\n{:26}", slopes.name);
+        for (_, errors, exponent) in &slopes.integrands {
+            let error = errors.last().map_or("-".into(), |error| format!("{error:.2e}"));
+            let exponent = exponent.map_or("-".into(), |exponent| format!("{exponent:.2}"));
+            text += &format!("  {error:>10} {exponent:>6}");
+        }
+    }
+    text
+}

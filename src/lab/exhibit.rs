@@ -1,0 +1,107 @@
+//! A set of points together with what is measured of it: what tables list and pages show.
+
+use super::measure::{Integrand, Measures, Periodogram, convergence, measure, spectrum_limit};
+use crate::error::Result;
+use crate::sampling::voronoi::Domain;
+use crate::sampling::{Strategy, to_f64};
+
+/// A set, and all about it.
+#[derive(Clone, Debug)]
+pub struct Exhibit {
+    /// What made it, in a few words; empty for a set of the user's.
+    pub description: &'static str,
+    /// In [0, 1)^2.
+    pub points: Vec<[f64; 2]>,
+    /// Whether it goes on beyond the edges of the square.
+    pub domain: Domain,
+    /// What making it took: counts and lengths by name.
+    pub facts: Vec<(&'static str, f64)>,
+    /// Of this set; its name as well.
+    pub measures: Measures,
+    /// The mean of this set's and of those of the seeds after its own, [`Exhibit::SPECTRA`] in all.
+    pub spectrum: Periodogram,
+}
+
+impl Exhibit {
+    /// How many sets of a random strategy make a spectrum, and how many points of them at most.
+    const SPECTRA: u64 = 10;
+    const SPECTRAL_POINTS: usize = 40_960;
+
+    /// The set of a strategy.
+    ///
+    /// # Errors
+    /// As [`Strategy::points`].
+    pub fn of_strategy(strategy: Strategy, count: u32, seed: u64) -> Result<Self> {
+        let set = strategy.points(count, seed)?;
+        let points: Vec<[f64; 2]> = set.points.iter().map(|p| p.map(to_f64)).collect();
+        let sets = Self::SPECTRA.min((Self::SPECTRAL_POINTS / points.len()) as u64).max(1);
+        let mut spectral = vec![points.clone()];
+        for seed in (seed + 1..seed + sets).filter(|_| strategy.is_random()) {
+            spectral.push(unit_points(strategy, count, seed)?);
+        }
+        let is_bounded = strategy == Strategy::BoundedVoronoi;
+        Ok(Self {
+            description: strategy.description(),
+            domain: if is_bounded { Domain::Square } else { Domain::Torus },
+            facts: set.facts,
+            measures: measure(strategy.name(), &points),
+            spectrum: Periodogram::mean_of(&spectral, spectrum_limit(points.len())),
+            points,
+        })
+    }
+
+    /// A set of the user's, points in [0, 1)^2.
+    pub fn of_points(name: &str, points: Vec<[f64; 2]>) -> Self {
+        Self {
+            description: "",
+            domain: Domain::Square,
+            facts: Vec::new(),
+            measures: measure(name, &points),
+            spectrum: Periodogram::new(&points, spectrum_limit(points.len())),
+            points,
+        }
+    }
+}
+
+/// How the error of integrating falls with the number of points.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Slopes {
+    /// Of the strategy.
+    pub name: &'static str,
+    /// Numbers of points.
+    pub counts: Vec<u32>,
+    /// For each integrand: its name, the root mean square error for each count, and the fitted exponent.
+    pub integrands: Vec<(&'static str, Vec<f64>, Option<f64>)>,
+}
+
+/// Root mean square errors over `seeds` sets of each count that the strategy allows, for every integrand.
+///
+/// # Errors
+/// As [`Strategy::points`].
+pub fn slopes(strategy: Strategy, counts: &[u32], seeds: u64) -> Result<Slopes> {
+    let counts: Vec<u32> = counts.iter().copied().filter(|n| strategy.allows(*n)).collect();
+    let sizes: Vec<usize> = counts.iter().map(|n| *n as usize).collect();
+    // Each set serves all integrands.
+    let seeds = if strategy.is_random() { seeds } else { 1 };
+    let mut sets = Vec::new();
+    for n in &counts {
+        let of_count: Result<Vec<_>> =
+            (0..seeds).map(|seed| unit_points(strategy, *n, seed)).collect();
+        sets.push(of_count?);
+    }
+    let found = |n: usize, seed: u64| {
+        let place = sizes.iter().position(|size| *size == n).unwrap_or(0);
+        Ok(sets[place][seed as usize].clone())
+    };
+    let mut integrands = Vec::new();
+    for integrand in Integrand::ALL {
+        let convergence = convergence(found, integrand, &sizes, seeds)?;
+        let errors = convergence.errors.iter().map(|e| e.rms_error).collect();
+        integrands.push((integrand.name(), errors, convergence.slope));
+    }
+    Ok(Slopes { name: strategy.name(), counts, integrands })
+}
+
+fn unit_points(strategy: Strategy, count: u32, seed: u64) -> Result<Vec<[f64; 2]>> {
+    Ok(strategy.points(count, seed)?.points.iter().map(|p| p.map(to_f64)).collect())
+}
