@@ -35,7 +35,8 @@ fn refuses(bench: &Bench, arguments: &[&str], code: i32, words: &str) {
 
 /// The values of an attribute, in order. Fails on what is no number.
 fn numbers(svg: &str, attribute: &str) -> Vec<f64> {
-    let parts = svg.split(&format!(" {attribute}=\"")).skip(1);
+    let opening = format!(" {attribute}=\"");
+    let parts = svg.split(&opening).skip(1);
     parts.map(|part| part.split('"').next().unwrap().parse().unwrap()).collect()
 }
 
@@ -67,7 +68,7 @@ fn svg_and_png_are_written_and_summarised() {
     assert!(
         x.iter().all(|x| (0.0..=64.0).contains(x)) && y.iter().all(|y| (0.0..=48.0).contains(y))
     );
-    assert!(r.iter().all(|r| *r == r[0].max(0.01)));
+    assert!(r[0] > 0.0 && r.iter().all(|radius| *radius == r[0]));
     let left = x.iter().filter(|x| **x < 32.0).count();
     assert!((300..420).contains(&left), "{left}");
 
@@ -86,7 +87,7 @@ fn svg_and_png_are_written_and_summarised() {
 #[test]
 fn bytes_follow_from_the_picture_and_the_seed() {
     let bench = with_ramp();
-    let mut drawn = |seed: &str, threads: &str| {
+    let drawn = |seed: &str, threads: &str| {
         let options = ["-n", "300", "-o", "a.svg", "-o", "a.png", "--sized", "--quiet"];
         let output = stipple(
             &bench,
@@ -148,7 +149,7 @@ fn what_makes_no_sense_is_refused_and_leaves_nothing() {
         (&["ramp.png", "--radius", "900", "-o", "a.svg"], 2, "64 times over"),
         (&["ramp.png", "--radius", "2", "--sized", "-o", "a.svg"], 2, "cannot be used with"),
         (&["ramp.png", "--scale", "0", "-o", "a.png"], 2, "--scale"),
-        (&["ramp.png", "--gamma", "-1", "-o", "a.png"], 2, "--gamma"),
+        (&["ramp.png", "--gamma", "0", "-o", "a.png"], 2, "--gamma"),
         (&["missing.png", svg[0], svg[1]], 1, "missing.png: cannot read"),
         (&["no.png", svg[0], svg[1]], 1, "no.png: "),
         (&["white.png", svg[0], svg[1]], 1, "white all over"),

@@ -81,7 +81,6 @@ fn constant_pictures_become_nearly_hexagonal() {
         };
         let mean = points.iter().map(to_neighbour).sum::<f64>() / points.len() as f64;
         let relative = mean / hexagonal;
-        println!("nearest neighbours at {relative} of the hexagonal bound");
         assert!((0.85..1.0).contains(&relative), "seed {seed}: {relative}");
     }
 }
@@ -97,14 +96,13 @@ fn counts_on_a_ramp(seed: u64, iterations: u32) -> [f64; 8] {
     counts
 }
 
-/// After many iterations the counts still are as the darkness is. With the darkness as the weight the first
-/// band has half as many again after as many iterations, and this fails.
+/// Counts stay within 2 % and 6 points of what the darkness says. With the darkness as the weight, instead of
+/// its square, the first band has 82 points instead of 62 after 100 iterations, and this fails.
 #[test]
 fn points_stay_as_dense_as_the_picture_is_dark() {
     for seed in 0..2 {
-        for iterations in [0, 100, 400] {
+        for iterations in [0, 100, 200] {
             let counts = counts_on_a_ramp(seed, iterations);
-            println!("{iterations} iterations: {counts:?}");
             for (count, band) in counts.iter().zip(0..) {
                 let expected = 4000.0 * f64::from(2 * band + 1) / 64.0;
                 let tolerance = 0.02 * expected + 6.0;
