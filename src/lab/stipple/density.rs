@@ -20,7 +20,7 @@ const ENOUGH_TEXELS: u64 = 1 << 24;
 const ENOUGH_TEXELS_PER_POINT: u64 = 256;
 /// Texels, and samples made by cutting, at most.
 const MOST_SAMPLES: u64 = 1 << 26;
-/// A cell in the black should have as many samples: its centroid is then known to a hundredth of its size.
+/// A cell in the black has at least as many samples, if pixels may be cut so far: of few, the centroid jumps.
 const SAMPLES_PER_CELL: u64 = 64;
 /// A side of a texel is cut into 2^4 samples at most.
 const MOST_REFINEMENT: u32 = 4;

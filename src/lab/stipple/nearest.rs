@@ -246,7 +246,7 @@ mod tests {
         for seed in 0..20 {
             let at = |i| {
                 let random = combine(seed, i);
-                [random, random >> 32].map(|r| (r % 9) as i64 * 4 << FRACTION)
+                [random, random >> 32].map(|r| ((r % 9) as i64 * 4) << FRACTION)
             };
             let points: Vec<_> = (0..40).map(at).collect();
             assert_nearest([33, 34], &points);
