@@ -1,5 +1,6 @@
 //! What can be said on the command line, each option in the type that it means. Parsing opens no file.
 
+use super::samples::Samples;
 use super::values::{
     Env, count, crop, direction, duration, env, field_of_view, filter, finite, named,
     override_material, point, replay, rgb_fractions, sampler, size, threads,
@@ -41,6 +42,8 @@ pub(super) enum Command {
     /// Writes a procedural OBJ model of any size, to test and to time with.
     #[command(after_help = GENERATE_EXAMPLES)]
     Generate(Generate),
+    /// The sampling laboratory: what points in the plane are good for.
+    Samples(Samples),
 }
 
 const RENDER_EXAMPLES: &str = "\

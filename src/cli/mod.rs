@@ -15,6 +15,7 @@ mod prepare;
 mod progress;
 mod render;
 mod report;
+mod samples;
 mod select;
 mod statistics;
 mod values;
@@ -43,6 +44,7 @@ pub fn main() -> ExitCode {
         args::Command::Plan(args) => plan::run(&args),
         args::Command::Bench(args) => bench::run(&args),
         args::Command::Generate(args) => generate::run(&args),
+        args::Command::Samples(args) => samples::run(&args),
     };
     ExitCode::from(code.unwrap_or_else(|error| {
         report::error(&error);

@@ -28,7 +28,7 @@ pub(super) struct Outputs {
 }
 
 /// The same for all names of a file.
-fn identity(path: &Path) -> PathBuf {
+pub(super) fn identity(path: &Path) -> PathBuf {
     let same = std::fs::canonicalize(path).or_else(|_| std::path::absolute(path));
     same.unwrap_or_else(|_| path.to_path_buf())
 }

@@ -37,6 +37,7 @@ mod oracle;
 mod scene_file;
 mod scene_file_errors;
 mod statistics;
+mod stipple_command;
 mod support;
 mod tidy;
 mod x;
