@@ -33,6 +33,7 @@ pub mod film;
 pub mod render;
 
 // Uses.
+pub mod lab;
 pub mod generate;
 pub mod study;
 

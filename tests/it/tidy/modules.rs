@@ -38,7 +38,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
         "error math sampling image ledger os geometry camera filter scene accel world plan trace film",
     ),
     // Uses.
-    ("lab", "error math sampling image ledger"),
+    ("lab", "error math sampling image filter"),
     ("generate", "error math sampling os geometry scene"),
     (
         "study",
