@@ -7,17 +7,18 @@
 
 use super::star::{Bracket, SLACK, star_discrepancy};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Sets of at most this many points are measured exactly.
-pub const EXACT_UP_TO: usize = 1024;
+pub const EXACT_UP_TO: usize = 2048;
 
 /// Columns and rows of the grid that bounds larger sets.
 const GRID: usize = 1024;
 
 /// D = sup over boxes [a, b) x [c, d) in [0, 1]^2 of |#(points in the box)/n - (b - a)(d - c)|, values in [0, 1).
 /// It is between D* and 4 D* ([`star_discrepancy`]). Exact (`low` is `high`, true to 1e-12) up to
-/// [`EXACT_UP_TO`] points. For more, a bracket no wider than 3 D*, and about 8/1024 for sets without gaps. 1
+/// [`EXACT_UP_TO`] points. For more, a bracket no wider than 3 D*, and about 4/1024 for sets without gaps. 1
 /// without points.
 pub fn extreme_discrepancy(points: &[[f64; 2]]) -> Bracket {
     let star = star_discrepancy(points);
@@ -35,37 +36,67 @@ pub fn extreme_discrepancy(points: &[[f64; 2]]) -> Bracket {
 fn exact(points: &[[f64; 2]], known: f64) -> f64 {
     let mut points = points.to_vec();
     points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
-    let worst = AtomicU64::new(known.to_bits());
-    (0..=points.len()).into_par_iter().for_each(|first| strips_from(first, &points, &worst));
-    f64::from_bits(worst.into_inner())
+    let ranks = (1..=points.len()).map(|j| j as f64 / points.len() as f64).collect();
+    let (zeros, worst) = (vec![0.0; points.len()], AtomicU64::new(known.to_bits()));
+    let strips = Strips { points, ranks, zeros, worst };
+    (0..=strips.points.len()).into_par_iter().for_each(|first| strips.search_from(first));
+    f64::from_bits(strips.worst.into_inner())
 }
 
-/// Raises `worst` to the worst box whose leftmost point, by growing x, is number `first`.
-fn strips_from(first: usize, points: &[[f64; 2]], worst: &AtomicU64) {
-    let n = points.len() as f64;
-    // Of points with the same x, strips that begin or end between them miss or hold some too many: less extreme
-    // than a true strip, which is looked at as well.
-    let x = |i: usize| points.get(i).map_or(1.0, |p| p[0]);
-    let left = if first == 0 { 0.0 } else { x(first - 1) };
-    let mut inside: Vec<f64> = Vec::with_capacity(points.len() - first);
-    // What the two discrepancies cannot exceed: each point adds 1/n, each step in x its length.
-    let (mut closed, mut open) = (0.0, 0.0);
-    let mut widths = (0.0, 0.0);
-    for next in first..=points.len() {
-        // The strip from the first to the last point inside, both in it: boxes with too many points.
-        if next > first {
-            let y = points[next - 1][1];
-            inside.insert(inside.partition_point(|other| *other < y), y);
-            let width = x(next - 1) - x(first);
-            closed += 1.0 / n + (width - widths.0);
-            raise(worst, &mut closed, || worst_in_strip(&inside, width, n));
-            widths.0 = width;
+/// The search of all strips between coordinates.
+struct Strips {
+    /// By growing x.
+    points: Vec<[f64; 2]>,
+    /// 1/n, 2/n, .. 1.
+    ranks: Vec<f64>,
+    zeros: Vec<f64>,
+    /// The worst box so far, as bits.
+    worst: AtomicU64,
+}
+
+impl Strips {
+    /// Looks at all boxes whose leftmost point is number `first`.
+    fn search_from(&self, first: usize) {
+        // Of points with the same x, strips that begin or end between them miss or hold some too many: less extreme
+        // than a true strip, which is looked at as well.
+        let x = |i: usize| self.points.get(i).map_or(1.0, |p| p[0]);
+        let left = if first == 0 { 0.0 } else { x(first - 1) };
+        let share = self.ranks.first().copied().unwrap_or(1.0);
+        let mut inside: Vec<f64> = Vec::with_capacity(self.points.len() - first);
+        // What the two discrepancies cannot exceed: each point adds 1/n, each step in x its length.
+        let (mut closed, mut open) = (0.0, 0.0);
+        let mut widths = (0.0, 0.0);
+        for next in first..=self.points.len() {
+            // The strip from the first to the last point inside, both in it: boxes with too many points.
+            if next > first {
+                let y = self.points[next - 1][1];
+                inside.insert(inside.partition_point(|other| *other < y), y);
+                let width = x(next - 1) - x(first);
+                closed += share + (width - widths.0);
+                raise(&self.worst, &mut closed, || self.worst_inside(&inside, width));
+                widths.0 = width;
+            }
+            // The strip between the nearest points outside, both not in it: boxes with too few points.
+            let width = x(next) - left;
+            open += share + (width - widths.1);
+            raise(&self.worst, &mut open, || self.worst_inside(&inside, width));
+            widths.1 = width;
         }
-        // The strip between the nearest points outside, both not in it: boxes with too few points.
-        let width = x(next) - left;
-        open += 1.0 / n + (width - widths.1);
-        raise(worst, &mut open, || worst_in_strip(&inside, width, n));
-        widths.1 = width;
+    }
+
+    /// The worst box in a strip of this width that holds points of the sorted coordinates `inside`.
+    ///
+    /// With t_j = j/n - width y_j, j from 1, a box from y_i to y_j with its edges has the excess t_j - (t_i - 1/n), and
+    /// one without its edges lacks t_i - (t_j - 1/n), where t = 0 at the lower edge of the square and t - 1/n is
+    /// k/n - width at the upper, above all k points. So the worst is the largest t less the smallest t - 1/n,
+    /// whichever comes first. (Equal coordinates: as for the strips.)
+    fn worst_inside(&self, inside: &[f64], width: f64) -> f64 {
+        let Some(last) = inside.len().checked_sub(1) else {
+            return width;
+        };
+        let (ranks, zeros) = (&self.ranks[..=last], &self.zeros[..=last]);
+        let (max, min) = extremes(ranks, zeros, inside, width);
+        max.max(0.0) - (min - self.ranks[0]).min(ranks[last] - width)
     }
 }
 
@@ -78,39 +109,27 @@ fn raise(worst: &AtomicU64, bound: &mut f64, value: impl FnOnce() -> f64) {
     }
 }
 
-/// The worst box in a strip of this width that holds points of the sorted coordinates `inside`.
-///
-/// With t_j = j/n - width y_j, j from 1, a box from y_i to y_j with its edges has the excess t_j - (t_i - 1/n), and
-/// one without its edges lacks (t_i) - (t_j - 1/n), where t = 0 at the lower edge of the square and t - 1/n is
-/// k/n - width at the upper, above all k points. So the worst is the largest t less the smallest t - 1/n,
-/// whichever comes first. (Equal coordinates: as for the strips.)
-fn worst_in_strip(inside: &[f64], width: f64, n: f64) -> f64 {
-    let share = 1.0 / n;
-    let t = |j: usize| (j + 1) as f64 * share - width * inside[j];
-    let (max, min) = extremes(inside.len(), t, t);
-    let top = inside.len() as f64 * share - width;
-    max.max(0.0) - (min - share).min(top)
-}
-
-/// The largest of `a` and the smallest of `b` at 0..count, in several lanes at a time.
+/// The largest and the smallest of right - left - width y, lists of equal length, in several lanes at a time.
 #[inline(always)]
-fn extremes(count: usize, a: impl Fn(usize) -> f64, b: impl Fn(usize) -> f64) -> (f64, f64) {
-    const LANES: usize = 4;
+fn extremes(right: &[f64], left: &[f64], y: &[f64], width: f64) -> (f64, f64) {
+    const LANES: usize = 8;
     let (mut max, mut min) = ([f64::NEG_INFINITY; LANES], [f64::INFINITY; LANES]);
-    let mut visit = |lane: usize, i: usize| {
-        let (a, b) = (a(i), b(i));
-        max[lane] = if a > max[lane] { a } else { max[lane] };
-        min[lane] = if b < min[lane] { b } else { min[lane] };
-    };
-    let whole = count - count % LANES;
-    for start in (0..whole).step_by(LANES) {
-        (0..LANES).for_each(|lane| visit(lane, start + lane));
+    let (rights, right_rest) = right.as_chunks::<LANES>();
+    let (lefts, left_rest) = left.as_chunks::<LANES>();
+    let (ys, y_rest) = y.as_chunks::<LANES>();
+    for ((right, left), y) in rights.iter().zip(lefts).zip(ys) {
+        for l in 0..LANES {
+            let value = right[l] - left[l] - width * y[l];
+            max[l] = if value > max[l] { value } else { max[l] };
+            min[l] = if value < min[l] { value } else { min[l] };
+        }
     }
-    (whole..count).for_each(|i| visit(0, i));
-    (
-        max.into_iter().fold(f64::NEG_INFINITY, f64::max),
-        min.into_iter().fold(f64::INFINITY, f64::min),
-    )
+    for ((right, left), y) in right_rest.iter().zip(left_rest).zip(y_rest) {
+        let value = right - left - width * y;
+        (max[0], min[0]) = (max[0].max(value), min[0].min(value));
+    }
+    let largest = max.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    (largest, min.into_iter().fold(f64::INFINITY, f64::min))
 }
 
 /// Bounds from the boxes whose sides are on `grid` + 1 quantiles of each coordinate: they are boxes themselves,
@@ -150,12 +169,12 @@ fn bracket(points: &[[f64; 2]], grid: usize) -> Bracket {
             let inner = if a + 1 < b { strip(a + 1, b - 1) } else { strip(a, a) };
             // What the column that came in may add to either.
             let grown = |i: usize, strip: Strip| {
-                (strip.count(rows) - last[i].count(rows), strip.width - last[i].width)
+                (strip.count() - last[i].count(), strip.width - last[i].width)
             };
             let ((count_out, width_out), (count_in, width_in)) = (grown(0, outer), grown(1, inner));
             low_bound += count_out + width_out;
             high_bound += (count_out + width_in).max(width_out + count_in);
-            raise(&low, &mut low_bound, || outer.on_grid(&y));
+            raise(&low, &mut low_bound, || on_grid(outer, &y));
             raise(&high, &mut high_bound, || between(outer, inner, &y));
             last = [outer, inner];
         }
@@ -174,37 +193,37 @@ struct Strip<'a> {
 }
 
 impl Strip<'_> {
-    /// The fraction of points in the strip below y_j.
-    #[inline(always)]
-    fn count(self, j: usize) -> f64 {
-        self.right[j] - self.left[j]
+    /// The fraction of points in the strip.
+    fn count(self) -> f64 {
+        self.right[self.right.len() - 1] - self.left[self.left.len() - 1]
     }
 
-    /// The worst box of this width with sides on the grid: its excess is a difference of two values of one function.
-    fn on_grid(self, y: &[f64]) -> f64 {
-        let excess = |j: usize| self.count(j) - self.width * y[j];
-        let (max, min) = extremes(y.len(), excess, excess);
-        max - min
+    /// The largest and the smallest c_i - width y_j, c_i the fraction of points below row i: i and j go through
+    /// ranges of the same length.
+    #[inline(always)]
+    fn extremes(self, i: Range<usize>, j: Range<usize>, y: &[f64], width: f64) -> (f64, f64) {
+        extremes(&self.right[i.clone()], &self.left[i], &y[j], width)
     }
+}
+
+/// The worst box as wide as the strip with sides on the grid: its excess is a difference of two values of one function.
+fn on_grid(strip: Strip, y: &[f64]) -> f64 {
+    let (max, min) = strip.extremes(0..y.len(), 0..y.len(), y, strip.width);
+    max - min
 }
 
 /// More than the worst box whose left and right sides are between those of the strips. Its lower and upper side are
 /// in rows, of which row j is between y_j and y_(j+1).
 fn between(outer: Strip, inner: Strip, y: &[f64]) -> f64 {
-    let rows = y.len() - 1;
+    let (lower, upper) = (0..y.len() - 1, 1..y.len());
     // Excess: no more than all points of the outer box less the area of the inner.
-    let (top, bottom) = extremes(
-        rows,
-        |j| outer.count(j + 1) - inner.width * y[j],
-        |j| outer.count(j) - inner.width * y[j + 1],
-    );
+    let (most, _) = outer.extremes(upper.clone(), lower.clone(), y, inner.width);
+    let (_, least) = outer.extremes(lower.clone(), upper.clone(), y, inner.width);
+    let excess = most - least;
     // Lack: no more than the area of the outer box less the points of the inner.
-    let (lack_top, lack_bottom) = extremes(
-        rows,
-        |j| outer.width * y[j + 1] - inner.count(j),
-        |j| outer.width * y[j] - inner.count(j + 1),
-    );
-    (top - bottom).max(lack_top - lack_bottom)
+    let (_, least) = inner.extremes(lower.clone(), upper.clone(), y, outer.width);
+    let (most, _) = inner.extremes(upper, lower, y, outer.width);
+    excess.max(most - least)
 }
 
 /// 0, at most `count` - 1 quantiles of the values, and 1: growing.
