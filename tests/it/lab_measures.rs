@@ -75,11 +75,10 @@ fn measures_agree_with_each_other() {
             );
             // A mean square is no more than the worst.
             assert!(found.l2_star < star);
-            // A projection is the discrepancy of boxes as high as the square.
-            assert!(
-                found.projection_x_discrepancy <= star && found.projection_y_discrepancy <= star
-            );
-            assert!(found.projection_x_discrepancy >= 0.5 / n);
+            // A projection is the discrepancy of boxes as high as the square; they may be the worst.
+            for projection in [found.projection_x_discrepancy, found.projection_y_discrepancy] {
+                assert!(0.5 / n <= projection && projection <= star + 1e-12);
+            }
             // The torus only shortens distances.
             assert!(found.toroidal_min_distance <= found.min_distance);
             assert!(found.toroidal_mean_distance <= found.mean_distance);
@@ -89,7 +88,7 @@ fn measures_agree_with_each_other() {
     }
 }
 
-/// H. Niederreiter, 1992, theorem 4.6: D* n of a (0, m, 2)-net in base 2 is at most m/2 + 3/2.
+/// H. Niederreiter, 1992, chapter 4: D* n of a (0, m, 2)-net in base 2 is at most m/2 + 3/2.
 #[test]
 fn nets_keep_their_promise() {
     for m in 1..=13 {

@@ -2,8 +2,8 @@
 //!
 //! Lines are sorted by slope and cut into blocks of about sqrt(n). Each block knows its upper envelope: the
 //! lines that are largest somewhere, in the order in which they are as x grows. Moving a whole block keeps
-//! its envelope; moving a part of it calls for a new one. So a range that ends at either end of the list moves
-//! in O(sqrt n), and a maximum is found in O(sqrt n), both amortised. Knows nothing of points.
+//! its envelope; moving a part of it calls for a new one. So a range that ends at either end of the list
+//! moves in O(sqrt n), and a maximum is found in O(sqrt n), both amortised. Knows nothing of points.
 
 use std::ops::Range;
 

@@ -1,9 +1,10 @@
 //! Extreme discrepancy: the worst of all boxes with sides along the axes.
 //!
 //! Source: the definition is in H. Niederreiter, Random Number Generation and Quasi-Monte Carlo Methods, SIAM
-//! 1992, section 2.1. Small sets: all strips between two coordinates, O(n^3) in the worst case (D. Dobkin,
-//! D. Gunopulos and W. Maass, 1996, show how to do it in O(n^2 log n)). Large sets: bounds from boxes on a grid
-//! of quantiles, in the manner of E. Thiémard, 2001. Knows nothing of who made the points.
+//! 1992, section 2.1. Small sets: all strips between two coordinates, O(n^3) in the worst case; D. Dobkin, D.
+//! Gunopulos and W. Maass, Computing the maximum bichromatic discrepancy, 1996, do better for more points.
+//! Large sets: bounds from boxes on a grid of quantiles, in the manner of E. Thiémard, An algorithm to compute
+//! bounds for the star discrepancy, 2001. Knows nothing of who made the points.
 
 use super::star::{Bracket, SLACK, star_discrepancy};
 use rayon::prelude::*;
@@ -16,10 +17,11 @@ pub const EXACT_UP_TO: usize = 2048;
 /// Columns and rows of the grid that bounds larger sets.
 const GRID: usize = 1024;
 
-/// D = sup over boxes [a, b) x [c, d) in [0, 1]^2 of |#(points in the box)/n - (b - a)(d - c)|, values in [0, 1).
-/// It is between D* and 4 D* ([`star_discrepancy`]). Exact (`low` is `high`, true to 1e-12) up to
-/// [`EXACT_UP_TO`] points. For more, a bracket no wider than 3 D*, and about 4/1024 for sets without gaps. 1
-/// without points.
+/// D = sup over boxes [a, b) x [c, d) in [0, 1]^2 of |#(points in the box)/n - (b - a)(d - c)|.
+///
+/// Values in [0, 1). It is between D* and 4 D* ([`star_discrepancy`]). Exact (`low` is `high`, true to 1e-12)
+/// up to [`EXACT_UP_TO`] points. For more, a bracket no wider than 3 D*, and about 4/1024 for sets without
+/// gaps. 1 without points.
 pub fn extreme_discrepancy(points: &[[f64; 2]]) -> Bracket {
     let star = star_discrepancy(points);
     if points.is_empty() {
@@ -57,8 +59,8 @@ struct Strips {
 impl Strips {
     /// Looks at all boxes whose leftmost point is number `first`.
     fn search_from(&self, first: usize) {
-        // Of points with the same x, strips that begin or end between them miss or hold some too many: less extreme
-        // than a true strip, which is looked at as well.
+        // Of points with the same x, strips that begin or end between them miss or hold some too many: less
+        // extreme than a true strip, which is looked at as well.
         let x = |i: usize| self.points.get(i).map_or(1.0, |p| p[0]);
         let left = if first == 0 { 0.0 } else { x(first - 1) };
         let share = self.ranks.first().copied().unwrap_or(1.0);
@@ -86,10 +88,10 @@ impl Strips {
 
     /// The worst box in a strip of this width that holds points of the sorted coordinates `inside`.
     ///
-    /// With t_j = j/n - width y_j, j from 1, a box from y_i to y_j with its edges has the excess t_j - (t_i - 1/n), and
-    /// one without its edges lacks t_i - (t_j - 1/n), where t = 0 at the lower edge of the square and t - 1/n is
-    /// k/n - width at the upper, above all k points. So the worst is the largest t less the smallest t - 1/n,
-    /// whichever comes first. (Equal coordinates: as for the strips.)
+    /// With t_j = j/n - width y_j, j from 1, a box from y_i to y_j with its edges has the excess
+    /// t_j - (t_i - 1/n), and one without its edges lacks t_i - (t_j - 1/n), where t = 0 at the lower edge of
+    /// the square and t - 1/n is k/n - width at the upper, above all k points. So the worst is the largest t
+    /// less the smallest t - 1/n, whichever comes first. (Equal coordinates: as for the strips.)
     fn worst_inside(&self, inside: &[f64], width: f64) -> f64 {
         let Some(last) = inside.len().checked_sub(1) else {
             return width;
@@ -100,8 +102,9 @@ impl Strips {
     }
 }
 
-/// Raises `worst` to `value`, unless its bound says that this is in vain; then the bound is the value. Numbers that
-/// are not negative are in the order of their bits, and skipped ones are too small to show: threads cannot matter.
+/// Raises `worst` to `value`, unless its bound says that this is in vain; then the bound is the value.
+/// Numbers that are not negative are in the order of their bits, and skipped ones are too small to show:
+/// threads cannot matter.
 fn raise(worst: &AtomicU64, bound: &mut f64, value: impl FnOnce() -> f64) {
     if *bound > f64::from_bits(worst.load(Ordering::Relaxed)) - SLACK {
         *bound = value();
@@ -132,8 +135,9 @@ fn extremes(right: &[f64], left: &[f64], y: &[f64], width: f64) -> (f64, f64) {
     (largest, min.into_iter().fold(f64::INFINITY, f64::min))
 }
 
-/// Bounds from the boxes whose sides are on `grid` + 1 quantiles of each coordinate: they are boxes themselves,
-/// and every other box is between two of them, one column and row larger and smaller on each side.
+/// Bounds from the boxes whose sides are on `grid` + 1 quantiles of each coordinate: they are boxes
+/// themselves, and every other box is between two of them, one column and row larger and smaller on each
+/// side.
 fn bracket(points: &[[f64; 2]], grid: usize) -> Bracket {
     let n = points.len() as f64;
     let x = quantiles(points.iter().map(|p| p[0]).collect(), grid);
@@ -198,22 +202,23 @@ impl Strip<'_> {
         self.right[self.right.len() - 1] - self.left[self.left.len() - 1]
     }
 
-    /// The largest and the smallest c_i - width y_j, c_i the fraction of points below row i: i and j go through
-    /// ranges of the same length.
+    /// The largest and the smallest c_i - width y_j, c_i the fraction of points below row i: i and j go
+    /// through ranges of the same length.
     #[inline(always)]
     fn extremes(self, i: Range<usize>, j: Range<usize>, y: &[f64], width: f64) -> (f64, f64) {
         extremes(&self.right[i.clone()], &self.left[i], &y[j], width)
     }
 }
 
-/// The worst box as wide as the strip with sides on the grid: its excess is a difference of two values of one function.
+/// The worst box as wide as the strip with sides on the grid: its excess is a difference of two values of one
+/// function.
 fn on_grid(strip: Strip, y: &[f64]) -> f64 {
     let (max, min) = strip.extremes(0..y.len(), 0..y.len(), y, strip.width);
     max - min
 }
 
-/// More than the worst box whose left and right sides are between those of the strips. Its lower and upper side are
-/// in rows, of which row j is between y_j and y_(j+1).
+/// More than the worst box whose left and right sides are between those of the strips. Its lower and upper
+/// side are in rows, of which row j is between y_j and y_(j+1).
 fn between(outer: Strip, inner: Strip, y: &[f64]) -> f64 {
     let (lower, upper) = (0..y.len() - 1, 1..y.len());
     // Excess: no more than all points of the outer box less the area of the inner.
@@ -278,8 +283,8 @@ mod tests {
         }
     }
 
-    /// Centred grids of m x m: k x l points in a closed box have the excess (k l - (k - 1)(l - 1))/m^2, which is
-    /// largest for all of them; the strips without points lack no more than 1/m.
+    /// Centred grids of m x m: k x l points in a closed box have the excess (k l - (k - 1)(l - 1))/m^2, which
+    /// is largest for all of them; the strips without points lack no more than 1/m.
     #[test]
     fn closed_forms() {
         for m in 1..12_u32 {

@@ -1,9 +1,9 @@
 //! Discrepancies in the mean square: star, centred, wrap-around, mixture.
 //!
-//! Sources: L2-star: T. Warnock, Computational investigations of low-discrepancy point sets, 1972. Centred and
-//! wrap-around: F. Hickernell, A generalized discrepancy and quadrature error bound, Math. Comp. 67, 1998, and
-//! Lattice rules: how well do they measure up?, 1998. Mixture: Y. Zhou, K. Fang and J. Ning, Mixture
-//! discrepancy for quasi-random point sets, J. Complexity 29, 2013.
+//! Sources: L2-star: T. Warnock, Computational investigations of low-discrepancy point sets, 1972. Centred
+//! and wrap-around: F. Hickernell, A generalized discrepancy and quadrature error bound, Math. Comp. 67,
+//! 1998, and Lattice rules: how well do they measure up?, 1998. Mixture: Y. Zhou, K. Fang and J. Ning,
+//! Mixture discrepancy for quasi-random point sets, J. Complexity 29, 2013.
 //!
 //! All are sqrt(C - (2/n) sum_i H(p_i) + (1/n^2) sum_ij K(p_i, p_j)) with C, H and K products over the two
 //! coordinates. They are roots here. SciPy's `qmc.discrepancy` (1.17) returns the root for `L2-star` and the
@@ -45,8 +45,8 @@ pub fn centered(points: &[[f64; 2]]) -> f64 {
     )
 }
 
-/// Wrap-around discrepancy: boxes that may leave the square on one side and enter on the other. Shifting the set
-/// on the torus changes nothing. Values in [0, 1). 4/3 without points.
+/// Wrap-around discrepancy: boxes that may leave the square on one side and enter on the other. Shifting the
+/// set on the torus changes nothing. Values in [0, 1). 4/3 without points.
 pub fn wraparound(points: &[[f64; 2]]) -> f64 {
     discrepancy(
         points,
@@ -62,8 +62,8 @@ pub fn wraparound(points: &[[f64; 2]]) -> f64 {
     )
 }
 
-/// Mixture discrepancy: between the centred and the wrap-around one, without their blind spots. Values in [0, 1).
-/// 19/12 without points.
+/// Mixture discrepancy: between the centred and the wrap-around one, without their blind spots. Values in
+/// [0, 1). 19/12 without points.
 pub fn mixture(points: &[[f64; 2]]) -> f64 {
     discrepancy(
         points,
@@ -92,8 +92,8 @@ struct Kernel<Single, Pair> {
     pair: Pair,
 }
 
-/// The discrepancy of a kernel. Sums K(p, q) - H(p) - H(q) + C over all pairs: its terms have the mean zero, so
-/// that no large numbers cancel at the end.
+/// The discrepancy of a kernel. Sums K(p, q) - H(p) - H(q) + C over all pairs: its terms have the mean zero,
+/// so that no large numbers cancel at the end.
 fn discrepancy<Single, Pair>(points: &[[f64; 2]], kernel: &Kernel<Single, Pair>) -> f64
 where
     Single: Fn(f64) -> f64 + Sync,
@@ -158,8 +158,8 @@ mod tests {
         assert_eq!(empty, [1.0 / 3.0, 13.0 / 12.0, 4.0 / 3.0, 19.0 / 12.0]);
     }
 
-    /// J. Halton and S. Zaremba, 1969: (n L2)^2 of Hammersley's set of n = 2^m points. For thousands of points the
-    /// square is a ten-millionth of its terms.
+    /// J. Halton and S. Zaremba, 1969: (n L2)^2 of Hammersley's set of n = 2^m points. For thousands of
+    /// points the square is a millionth of its terms.
     #[test]
     fn hammersley_sets() {
         for m in 0..=12_u32 {
@@ -172,8 +172,8 @@ mod tests {
         }
     }
 
-    /// Periodic sums of the wrap-around kernel are known: 3/2 - d(1 - d) over the m points of a regular grid has the
-    /// mean 4/3 + 1/(6 m^2).
+    /// Periodic sums of the wrap-around kernel are known: 3/2 - d(1 - d) over the m points of a regular grid
+    /// has the mean 4/3 + 1/(6 m^2).
     #[test]
     fn regular_grids() {
         for m in 1..30_u32 {

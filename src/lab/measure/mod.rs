@@ -1,7 +1,7 @@
 //! Measures of point sets: discrepancies, distances, projections, nets, spectra, errors of integration.
 //!
-//! A set is a slice of points of the unit square, values in [0, 1). Each measure is a file with its source. None
-//! knows which strategy made the set. Results have the same bits for any number of threads.
+//! A set is a slice of points of the unit square, values in [0, 1). Each measure is a file with its source.
+//! None knows which strategy made the set. Results have the same bits for any number of threads.
 
 mod envelope;
 mod extreme;
@@ -75,8 +75,8 @@ pub struct Measures {
     pub anisotropy_limit: usize,
 }
 
-/// The largest frequency that is measured of n points, in cycles across the square: twice that of a square grid,
-/// 2 sqrt(n), but at most 128, where time is n 128^2.
+/// The largest frequency that is measured of n points, in cycles across the square: twice that of a square
+/// grid, 2 sqrt(n), but at most 128, where time is n 128^2.
 pub fn spectrum_limit(n: usize) -> usize {
     (4 * n).isqrt().min(128)
 }
@@ -124,8 +124,8 @@ mod tests {
         (0..n).map(|i| [unit(2 * i), unit(2 * i + 1)]).collect()
     }
 
-    /// n points with few different coordinates, 0 and the last number below 1 among them: many are equal in one
-    /// or both.
+    /// n points with few different coordinates, 0 and the last number below 1 among them: many are equal in
+    /// one or both.
     pub(super) fn random_tied_set(n: usize, seed: u64) -> Vec<[f64; 2]> {
         let values = [0.0, 0.2, 0.25, 0.5, 0.5 + f64::EPSILON, 0.9, 1.0 - f64::EPSILON / 2.0];
         let few = |v: f64| values[(v * values.len() as f64) as usize];

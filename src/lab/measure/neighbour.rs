@@ -1,9 +1,9 @@
 //! Distances to nearest neighbours, on the square and on the torus.
 //!
 //! Source: A. Lagae and P. Dutré, A comparison of methods for generating Poisson disk distributions, Computer
-//! Graphics Forum 27, 2008, for distances relative to those of the hexagonal lattice. The search is a k-d tree
-//! (J. Friedman, J. Bentley and R. Finkel, 1977): a grid would be linear for even sets, but quadratic for
-//! clusters, where the tree still takes O(n log n). Knows nothing of who made the points.
+//! Graphics Forum 27, 2008, for distances relative to those of the hexagonal lattice. The search is a k-d
+//! tree (J. Friedman, J. Bentley and R. Finkel, 1977): a grid would be linear for even sets, but quadratic
+//! for clusters, where the tree still takes O(n log n). Knows nothing of who made the points.
 
 use super::sum::mean;
 use rayon::prelude::*;
@@ -13,7 +13,8 @@ use rayon::prelude::*;
 pub enum Domain {
     /// In the plane: points at opposite sides of the square are far apart.
     Bounded,
-    /// On the torus: the square repeats itself in all directions, as a tile. A point is not its own neighbour.
+    /// On the torus: the square repeats itself in all directions, as a tile. A point is not its own
+    /// neighbour.
     Toroidal,
 }
 
@@ -24,8 +25,8 @@ pub struct Neighbours {
     pub minimum: f64,
     /// The mean; about 0.5/sqrt(n) for independent points.
     pub mean: f64,
-    /// `minimum` by the smallest distance in a hexagonal lattice as dense, sqrt(2/(sqrt(3) n)): no set of the torus
-    /// has more than 1. Good blue noise has about 0.75.
+    /// `minimum` by the smallest distance in a hexagonal lattice as dense, sqrt(2/(sqrt(3) n)): no set of the
+    /// torus has more than 1. Good blue noise has about 0.75.
     pub relative_minimum: f64,
     /// `mean` by the same distance.
     pub relative_mean: f64,
@@ -200,7 +201,7 @@ mod tests {
 
     #[test]
     fn closed_forms() {
-        // Rows of a hexagonal lattice that closes on the torus nearly: 15 rows of 13 points, 15/13 of 2/sqrt(3).
+        // 14 rows of 13 points make nearly a hexagonal lattice: rows are sqrt(3)/2 as far apart as points.
         let row = |i: u32| f64::from(i / 13);
         let hexagonal: Vec<_> = (0..13 * 14)
             .map(|i| [(f64::from(i % 13) + 0.5 * (row(i) % 2.0)) / 13.0, row(i) / 14.0])

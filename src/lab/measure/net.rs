@@ -3,8 +3,8 @@
 //! Source: H. Niederreiter, Random Number Generation and Quasi-Monte Carlo Methods, SIAM 1992, chapter 4. An
 //! elementary interval is [a/2^i, (a+1)/2^i) x [b/2^j, (b+1)/2^j). Knows nothing of who made the points.
 
-/// The smallest t such that every elementary interval of area 2^(t-m) holds exactly 2^t of the n = 2^m points,
-/// values in [0, 1): 0 is best, m is true of every set. `None` when n is no power of two. O(n m^2).
+/// The smallest t such that every elementary interval of area 2^(t-m) holds exactly 2^t of the n = 2^m
+/// points, values in [0, 1): 0 is best, m is true of every set. `None` when n is no power of two. O(n m^2).
 pub fn t_value(points: &[[f64; 2]]) -> Option<u32> {
     if !points.len().is_power_of_two() {
         return None;
@@ -90,9 +90,7 @@ mod tests {
         assert!(seen[0] > 0 && seen.iter().filter(|n| **n > 0).count() >= 3, "{seen:?}");
     }
 
-    /// 256 independent points share the two halves equally with probability 0.05, so t is 7 or 8 but with
-    /// probability 1e-3 or so; a quarter each in all three ways would be below 1e-4, and an eighth each 1e-9:
-    /// t above 5.
+    /// t up to 5 takes eight columns of 32 points each: probability 3e-8 (multinomial), 6e-7 over all seeds.
     #[test]
     fn random_points_are_no_net() {
         for seed in 0..20 {

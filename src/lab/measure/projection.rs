@@ -34,7 +34,7 @@ fn strata(values: &[f64]) -> f64 {
     hit.len() as f64 / n.max(1.0)
 }
 
-/// The star discrepancy of the sorted `values` in one dimension: 1/(2n) + max |x_i - (2i - 1)/(2n)|, i from 1.
+/// The star discrepancy of the sorted `values` alone: 1/(2n) + max |x_i - (2i - 1)/(2n)|, i from 1.
 fn star_discrepancy(values: &[f64]) -> f64 {
     if values.is_empty() {
         return 1.0;

@@ -1,7 +1,7 @@
 //! Integrals of smooth functions of one variable, by Gauss-Legendre panels.
 //!
-//! Source: P. Davis and P. Rabinowitz, Methods of Numerical Integration, 1984, section 2.7: the nodes are roots
-//! of Legendre's polynomial, found by Newton's method.
+//! Source: P. Davis and P. Rabinowitz, Methods of Numerical Integration, 1984, chapter 2: the nodes are
+//! roots of Legendre's polynomial, found by Newton's method.
 
 use super::sum::sum;
 use crate::math::fun::double::cos;
@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 /// Nodes of a panel. The rule is exact for polynomials of twice this degree, less one.
 const NODES: usize = 16;
 
-/// The integral of f over [0, 1] in panels of equal width. To 1e-15 of max |f| where f turns by less than about
-/// pi in a panel.
+/// The integral of f over [0, 1] in panels of equal width. To 1e-15 of max |f| where f turns by less than
+/// about pi in a panel.
 pub(super) fn integral(panels: usize, f: impl Fn(f64) -> f64) -> f64 {
     let rule = rule();
     let width = 1.0 / panels as f64;

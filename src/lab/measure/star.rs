@@ -1,13 +1,14 @@
 //! Star discrepancy: the worst box with a corner at the origin.
 //!
-//! Source: the finite form of the supremum is H. Niederreiter's (1972); that two dimensions take far less than
-//! the n^2 boxes was shown by D. Dobkin and D. Eppstein (Computing the discrepancy, 1993, O(n log^2 n)).
-//! Here ranges of lines move as in [`super::envelope`], in O(n sqrt n). Knows nothing of who made the points.
+//! Source: the finite form of the supremum is H. Niederreiter's (1972); that convex hulls which
+//! change with the points spare most of the n^2 boxes was shown by D. Dobkin and D. Eppstein, Computing the
+//! discrepancy, SoCG 1993. Here it takes O(n sqrt n) with [`super::envelope`]. Knows nothing of who made the points.
 
 use super::envelope::Envelope;
 use serde::Serialize;
 
-/// Bounds of a value: `low <= value <= high`, each to about 1e-12 for rounding. Equal when the value is exact.
+/// Bounds of a value: `low <= value <= high`, each to about 1e-12 for rounding. Equal when the value is
+/// exact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bracket {
     /// No more than the value.
@@ -32,8 +33,8 @@ impl Bracket {
 /// the result has the same bits as if they were.
 pub(super) const SLACK: f64 = 1e-12;
 
-/// D* = sup over (a, b) in [0, 1]^2 of |#(points in [0, a) x [0, b))/n - a b|, values in [0, 1). Exact for every
-/// n: `low` is `high`, true to 1e-12. 1 without points. O(n sqrt n) time, O(n) memory.
+/// D* = sup over (a, b) in [0, 1]^2 of |#(points in [0, a) x [0, b))/n - a b|, values in [0, 1). Exact for
+/// every n: `low` is `high`, true to 1e-12. 1 without points. O(n sqrt n) time, O(n) memory.
 pub fn star_discrepancy(points: &[[f64; 2]]) -> Bracket {
     let n = points.len();
     if n == 0 {
@@ -41,10 +42,10 @@ pub fn star_discrepancy(points: &[[f64; 2]]) -> Bracket {
     }
     let share = 1.0 / n as f64;
 
-    // Corners of the worst box are at coordinates of points or at 1. At a corner (x, y_j), where c_j counts the
-    // points so far that are as low as y_j in order:
-    // a box that has too many holds the points on its far edges: c_j/n - x y_j, a line in x of slope -y_j;
-    // a box that has too few does not: x y_j - c_(j-1)/n, with y_n = 1 besides.
+    // Corners of the worst box are at coordinates of points or at 1. At a corner (x, y_j), where c_j counts
+    // the points so far up to the j-th by y, a box that has too many holds the points on its far edges and
+    // has c_j/n - x y_j too many, a line in x of slope -y_j. A box that has too few does not hold them and
+    // lacks x y_j - c_(j-1)/n, with y_n = 1 besides.
     let mut by_y: Vec<usize> = (0..n).collect();
     by_y.sort_unstable_by(|&a, &b| points[a][1].total_cmp(&points[b][1]));
     let mut place = vec![0; n];
@@ -127,8 +128,8 @@ mod tests {
         }
     }
 
-    /// J. Halton and S. Zaremba (The extreme and L2 discrepancies of some plane sets, 1969): n D* of Hammersley's
-    /// set of n = 2^m points is m/3 + 13/9 - (-1)^m 4/(9 2^m), m > 1.
+    /// J. Halton and S. Zaremba (The extreme and L2 discrepancies of some plane sets, 1969): n D* of
+    /// Hammersley's set of n = 2^m points is m/3 + 13/9 - (-1)^m 4/(9 2^m), m > 1.
     #[test]
     fn hammersley_sets() {
         for m in 2..=14_u32 {

@@ -1,6 +1,7 @@
 //! Sums whose rounding does not grow with the number of terms.
 //!
-//! Source: A. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54, 1974.
+//! Source: A. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen, ZAMM 54,
+//! 1974.
 
 /// The sum of the values in their order: its error is that of one rounding, and n^2 times smaller ones.
 pub(super) fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
