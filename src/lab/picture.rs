@@ -10,7 +10,8 @@ const GAP: u32 = 16;
 pub fn of(exhibit: &Exhibit) -> (Vec<[u8; 1]>, [u32; 2]) {
     let size = [3 * GAP + 2 * SIDE, 2 * GAP + SIDE];
     let mut canvas = Canvas { size, shades: vec![1.0; (size[0] * size[1]) as usize] };
-    let radius = (0.22 * f64::from(SIDE) / (exhibit.points.len().max(1) as f64).sqrt()).clamp(0.7, 5.0);
+    let radius =
+        (0.22 * f64::from(SIDE) / (exhibit.points.len().max(1) as f64).sqrt()).clamp(0.7, 5.0);
     for [x, y] in &exhibit.points {
         let side = f64::from(SIDE);
         canvas.disc([f64::from(GAP) + side * x, f64::from(GAP) + side * (1.0 - y)], radius);
@@ -21,7 +22,8 @@ pub fn of(exhibit: &Exhibit) -> (Vec<[u8; 1]>, [u32; 2]) {
         for column in 0..SIDE {
             let [kx, ky] = [column, SIDE - 1 - row].map(|i| i64::from(i * width / SIDE) - limit);
             // The origin has the power n of every set: nothing to see.
-            let power = if (kx, ky) == (0, 0) { 0.0 } else { exhibit.spectrum.at(kx, ky).unwrap_or(0.0) };
+            let power =
+                if (kx, ky) == (0, 0) { 0.0 } else { exhibit.spectrum.at(kx, ky).unwrap_or(0.0) };
             // Four times the power of random points is black.
             canvas.darken([2 * GAP + SIDE + column, GAP + row], (power / 4.0).sqrt().min(1.0));
         }
@@ -81,7 +83,8 @@ mod tests {
         let (pixels, [width, height]) = of(&exhibit);
         assert_eq!(pixels.len(), (width * height) as usize);
         let ink = |columns: std::ops::Range<u32>| -> f64 {
-            let inside = (GAP..GAP + SIDE - 1).flat_map(|row| columns.clone().map(move |c| row * width + c));
+            let inside =
+                (GAP..GAP + SIDE - 1).flat_map(|row| columns.clone().map(move |c| row * width + c));
             inside.map(|i| 1.0 - f64::from(pixels[i as usize][0]) / 255.0).sum()
         };
         let radius = 5.0_f64;

@@ -27,6 +27,7 @@ mod effects_plan;
 mod filter;
 mod generate;
 mod image;
+mod lab_measures;
 mod light;
 mod load_mutations;
 mod load_options;

@@ -52,7 +52,8 @@ fn strategies(text: &str) -> std::result::Result<Strategies, String> {
         let names = known().map(Strategy::name).chain(["all"]);
         found.ok_or_else(|| unknown_name("sampler", name, names))
     };
-    let list: std::result::Result<_, String> = text.split(',').map(|name| named(name.trim())).collect();
+    let list: std::result::Result<_, String> =
+        text.split(',').map(|name| named(name.trim())).collect();
     Ok(Strategies { list: list?, is_all: false })
 }
 

@@ -46,7 +46,8 @@ pub(super) fn run(args: &Measure) -> Result<u8> {
     let mut fitted = Vec::new();
     if args.slopes {
         let strategies = sets.strategies()?;
-        let counts: Vec<u32> = (0..5).rev().map(|k| sets.count >> (2 * k)).filter(|n| *n > 0).collect();
+        let counts: Vec<u32> =
+            (0..5).rev().map(|k| sets.count >> (2 * k)).filter(|n| *n > 0).collect();
         let bar = sets.bar(strategies.len());
         for strategy in strategies {
             fitted.push(slopes(strategy, &counts, SEEDS)?);
@@ -68,7 +69,9 @@ pub(super) fn run(args: &Measure) -> Result<u8> {
 
 /// Errors of integration for the largest count, and exponents.
 fn slope_table(fitted: &[Slopes]) -> String {
-    let mut text = String::from("\nintegration: RMS error with the most points, and the exponent of n that it falls with\n");
+    let mut text = String::from(
+        "\nintegration: RMS error with the most points, and the exponent of n that it falls with\n",
+    );
     text += &format!("{:26}", "set");
     for (integrand, ..) in fitted.first().map_or(&[][..], |slopes| &slopes.integrands) {
         text += &format!("  {integrand:>17}");

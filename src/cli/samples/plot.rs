@@ -39,7 +39,8 @@ enum Format {
 
 /// Draws as told; the exit code.
 pub(super) fn run(args: &Plot) -> Result<u8> {
-    let formats: Vec<Format> = args.output.iter().map(|path| format(path)).collect::<Result<_>>()?;
+    let formats: Vec<Format> =
+        args.output.iter().map(|path| format(path)).collect::<Result<_>>()?;
     args.output.iter().try_for_each(|path| check_writable(path))?;
     let exhibits = args.sets.exhibits()?;
     let mut written = Vec::new();
@@ -90,7 +91,8 @@ fn format(path: &Path) -> Result<Format> {
 
 /// `set.svg` of a set named `sobol`: `set-sobol.svg`.
 fn named(path: &Path, exhibit: &Exhibit) -> PathBuf {
-    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let part =
+        |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let (stem, ending) = (part(path.file_stem()), part(path.extension()));
     // Names of files are paths: no part of them may lead elsewhere.
     let name = exhibit.measures.name.replace(['/', '\\'], "_");

@@ -104,14 +104,17 @@ fn picture(args: &Zoneplate) -> Result<Run> {
     let plate = ZonePlate { size: args.size };
     let truth = plate.exact(args.filter);
     let (pixels, run) = match args.exact {
-        true => (truth, Run { samples_per_pixel: 0, ..Run::new(args.sampler, args.filter, *samples) }),
+        true => {
+            (truth, Run { samples_per_pixel: 0, ..Run::new(args.sampler, args.filter, *samples) })
+        }
         false => sampled(plate, args.sampler, args.filter, *samples, args.seed, &truth),
     };
     // Shown as bright as it is measured: fine rings and their mean then look alike from afar.
     let shown: Vec<[u8; 1]> = pixels.iter().map(|v| [srgb::encode8(*v as f32)]).collect();
     write_png(path, &shown, args.size, args.size)?;
     if !args.quiet {
-        let is_biased = if args.sampler == Strategy::Grid && !args.exact { " (biased)" } else { "" };
+        let is_biased =
+            if args.sampler == Strategy::Grid && !args.exact { " (biased)" } else { "" };
         let line = format!("wrote {}: RMS error {:.5}{is_biased}", path.display(), run.rmse);
         let _ = writeln!(io::stderr(), "{line}");
     }
@@ -137,7 +140,13 @@ fn sampled(
 
 impl Run {
     fn new(strategy: Strategy, filter: Filter, samples_per_pixel: u64) -> Self {
-        Self { sampler: strategy.name(), filter: filter.to_string(), samples_per_pixel, rmse: 0.0, seconds: 0.0 }
+        Self {
+            sampler: strategy.name(),
+            filter: filter.to_string(),
+            samples_per_pixel,
+            rmse: 0.0,
+            seconds: 0.0,
+        }
     }
 }
 

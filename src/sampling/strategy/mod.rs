@@ -150,7 +150,9 @@ impl Strategy {
             Self::Jittered => "stratified: one uniform point in each cell of a grid",
             Self::NRooks => "Latin hypercube: one point in each of n rows and n columns",
             Self::MultiJittered => "one point a cell, and one in each of n rows and n columns",
-            Self::CorrelatedMultiJittered => "multi-jittered with one shuffle for all rows or columns",
+            Self::CorrelatedMultiJittered => {
+                "multi-jittered with one shuffle for all rows or columns"
+            }
             Self::DartThrowing => "Poisson disk: random points that keep a distance",
             Self::PoissonDisk => "Poisson disk in linear time: darts only where there is room",
             Self::CentroidalVoronoi => "Lloyd's relaxation on the torus",

@@ -7,8 +7,12 @@ mod bars;
 mod bench;
 mod frames;
 mod html;
+mod panel;
 mod render;
+mod samples;
 mod stack;
 
 pub use bench::bench_page;
+pub use panel::panel;
 pub use render::render_page;
+pub use samples::samples_page;

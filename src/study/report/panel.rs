@@ -152,7 +152,11 @@ fn periodogram(html: &mut Html, spectrum: &Periodogram) {
     ];
     html.element("rect", &frame, "");
     let below = TOP + SPECTRUM + 14.0;
-    html.element("text", &[("x", &SPECTRUM_LEFT), ("y", &below)], format!("periodogram, to {limit} cycles"));
+    html.element(
+        "text",
+        &[("x", &SPECTRUM_LEFT), ("y", &below)],
+        format!("periodogram, to {limit} cycles"),
+    );
 }
 
 /// Mean power by radius; the dashed line is that of random points.

@@ -42,7 +42,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("generate", "error math sampling os geometry scene"),
     (
         "study",
-        "error math sampling image ledger os geometry scene load accel world plan trace film render",
+        "error math sampling image ledger os geometry scene load accel world plan trace film render lab",
     ),
     ("batch", "error math image ledger os scene load accel world plan film render"),
     // Front end.
