@@ -4,6 +4,7 @@ use super::measure::{Integrand, Measures, Periodogram, convergence, measure, spe
 use crate::error::Result;
 use crate::sampling::voronoi::Domain;
 use crate::sampling::{Strategy, to_f64};
+use serde::Serialize;
 
 /// A set, and all about it.
 #[derive(Clone, Debug)]
@@ -64,14 +65,27 @@ impl Exhibit {
 }
 
 /// How the error of integrating falls with the number of points.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Slopes {
     /// Of the strategy.
     pub name: &'static str,
     /// Numbers of points.
     pub counts: Vec<u32>,
-    /// For each integrand: its name, the root mean square error for each count, and the fitted exponent.
-    pub integrands: Vec<(&'static str, Vec<f64>, Option<f64>)>,
+    /// What became of each integrand.
+    pub fits: Vec<Fit>,
+}
+
+/// The errors of one integrand.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub struct Fit {
+    /// What is integrated.
+    pub integrand: &'static str,
+    /// Root mean square error for each count.
+    pub rms_errors: Vec<f64>,
+    /// Of the count, fitted: -0.5 for random points.
+    pub exponent: Option<f64>,
 }
 
 /// Root mean square errors over `seeds` sets of each count that the strategy allows, for every integrand.
@@ -93,13 +107,13 @@ pub fn slopes(strategy: Strategy, counts: &[u32], seeds: u64) -> Result<Slopes> 
         let place = sizes.iter().position(|size| *size == n).unwrap_or(0);
         Ok(sets[place][seed as usize].clone())
     };
-    let mut integrands = Vec::new();
+    let mut fits = Vec::new();
     for integrand in Integrand::ALL {
         let convergence = convergence(found, integrand, &sizes, seeds)?;
-        let errors = convergence.errors.iter().map(|e| e.rms_error).collect();
-        integrands.push((integrand.name(), errors, convergence.slope));
+        let rms_errors = convergence.errors.iter().map(|e| e.rms_error).collect();
+        fits.push(Fit { integrand: integrand.name(), rms_errors, exponent: convergence.slope });
     }
-    Ok(Slopes { name: strategy.name(), counts, integrands })
+    Ok(Slopes { name: strategy.name(), counts, fits })
 }
 
 fn unit_points(strategy: Strategy, count: u32, seed: u64) -> Result<Vec<[f64; 2]>> {

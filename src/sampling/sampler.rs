@@ -275,7 +275,7 @@ mod tests {
         }
     }
 
-    /// Whatever the strategy, every sample of a pixel is uniform by itself: 20 000 seeds in 8 by 8 boxes, for the first and
+    /// Whatever the strategy, every sample of a pixel is uniform by itself: 20 000 pixels in 8 by 8 boxes, for the first and
     /// for another sample of a set of 16. Chi squared of 63 degrees is above 155 with 2e-9: 30 comparisons, 6e-8 in
     /// all; a density off by a fifth in a quarter of the square would be found.
     #[test]

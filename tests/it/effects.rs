@@ -12,10 +12,11 @@ use glint::ledger::Stage;
 use glint::math::Vec3;
 use glint::plan::{Pipeline, Plan};
 use glint::render::Rendered;
+use glint::sampling::Strategy;
 use glint::scene::Projection;
 use glint::world::Details;
 
-const SMALL: Small = Small { size: [32, 18], spp: 4, seed: 0 };
+const SMALL: Small = Small { size: [32, 18], spp: 4, seed: 0, strategy: Strategy::Sobol };
 
 /// Whether `auto` samples other lights than `all` in this scene: it leaves a constant environment to scattering.
 fn changes_estimator(scene: &FileScene) -> bool {
@@ -136,7 +137,7 @@ fn every_wrong_decision_would_have_been_seen() {
         let scene = FileScene::load(&path);
         let (world, plan) = scene.plan_with_all_lights();
         let embree = EmbreeAccelerator::build(world.geometry.clone(), 2).expect("it builds");
-        let small = Small { size: [16, 9], spp: 4, seed: 0 };
+        let small = Small { size: [16, 9], spp: 4, seed: 0, strategy: Strategy::Sobol };
         let right = scene.render_on(&world, &plan, &embree, small).film;
         unseen.retain(|(_, mutate)| {
             let mut wrong = plan.clone();
@@ -153,7 +154,7 @@ fn stages_add_up_to_the_time_of_the_workers() {
     for path in paths().iter().filter(|path| path.ends_with("cornell.toml")) {
         let scene = FileScene::load(path);
         let (world, plan) = scene.plan("auto");
-        let small = Small { size: [128, 128], spp: 8, seed: 0 };
+        let small = Small { size: [128, 128], spp: 8, seed: 0, strategy: Strategy::Sobol };
         let ledger = scene.render(&world, &plan, Backend::Embree, small).ledger;
         let covered = ledger.seconds() / ledger.worker_seconds;
         assert!((0.95..=1.0).contains(&covered), "{covered} of the time is in stages");

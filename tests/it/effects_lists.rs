@@ -9,9 +9,10 @@ use glint::accel::embree::EmbreeAccelerator;
 use glint::ledger::Class;
 use glint::plan::{Plan, Wishes};
 use glint::render::{Bill, Rendered};
+use glint::sampling::Strategy;
 use glint::scene::{Effect, Effects};
 
-const SMALL: Small = Small { size: [16, 9], spp: 2, seed: 0 };
+const SMALL: Small = Small { size: [16, 9], spp: 2, seed: 0, strategy: Strategy::Sobol };
 
 /// Each effect taken out, and some that take out several.
 fn lists() -> Vec<String> {

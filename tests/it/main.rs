@@ -35,6 +35,7 @@ mod mtl;
 mod media;
 mod obj;
 mod oracle;
+mod samplers;
 mod scene_file;
 mod scene_file_errors;
 mod statistics;

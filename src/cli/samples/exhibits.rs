@@ -115,7 +115,7 @@ pub(super) fn bar(steps: usize, quiet: bool) -> ProgressBar {
 }
 
 fn points(file: &Path) -> Result<Vec<[f64; 2]>> {
-    let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, e))?;
+    let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, "read", e))?;
     let points = points_from_text(&text, &file.display().to_string())?;
     if points.is_empty() {
         let message = format!("{}: there are no points in it", file.display());

@@ -3,7 +3,7 @@
 use super::exhibits::Sets;
 use crate::cli::{DONE, report};
 use crate::error::Result;
-use crate::lab::exhibit::{Slopes, slopes};
+use crate::lab::exhibit::{Fit, Slopes, slopes};
 use crate::lab::listing;
 use crate::lab::measure::Measures;
 use clap::Args;
@@ -28,12 +28,18 @@ pub(super) struct Measure {
 /// What `--json` prints.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-struct Report {
+pub(in crate::cli) struct Report {
     /// Of glint.
     version: &'static str,
     sets: Vec<Measures>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    /// Where they were asked for.
     slopes: Vec<Slopes>,
+}
+
+impl Report {
+    pub(super) fn new(sets: Vec<Measures>, slopes: Vec<Slopes>) -> Self {
+        Self { version: env!("CARGO_PKG_VERSION"), sets, slopes }
+    }
 }
 
 /// Sets of each size that errors are the mean of.
@@ -56,8 +62,7 @@ pub(super) fn run(args: &Measure) -> Result<u8> {
         bar.finish_and_clear();
     }
     if sets.json {
-        let version = env!("CARGO_PKG_VERSION");
-        report::json(&Report { version, sets: measured, slopes: fitted })?;
+        report::json(&Report::new(measured, fitted))?;
         return Ok(DONE);
     }
     report::print(&listing::table(measured.iter()))?;
@@ -73,13 +78,13 @@ fn slope_table(fitted: &[Slopes]) -> String {
         "\nintegration: RMS error with the most points, and the exponent of n that it falls with\n",
     );
     text += &format!("{:26}", "set");
-    for (integrand, ..) in fitted.first().map_or(&[][..], |slopes| &slopes.integrands) {
-        text += &format!("  {integrand:>17}");
+    for fit in fitted.first().map_or(&[][..], |slopes| &slopes.fits) {
+        text += &format!("  {:>17}", fit.integrand);
     }
     for slopes in fitted {
         text += &format!("\n{:26}", slopes.name);
-        for (_, errors, exponent) in &slopes.integrands {
-            let error = errors.last().map_or("-".into(), |error| format!("{error:.2e}"));
+        for Fit { rms_errors, exponent, .. } in &slopes.fits {
+            let error = rms_errors.last().map_or("-".into(), |error| format!("{error:.2e}"));
             let exponent = exponent.map_or("-".into(), |exponent| format!("{exponent:.2}"));
             text += &format!("  {error:>10} {exponent:>6}");
         }

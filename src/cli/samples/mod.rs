@@ -1,10 +1,10 @@
 //! `glint samples`: the commands of the sampling laboratory, each in a file of its own with its options.
 
 mod exhibits;
-mod measure;
+pub(super) mod measure;
 mod plot;
-mod stipple;
-mod zoneplate;
+pub(super) mod stipple;
+pub(super) mod zoneplate;
 
 use crate::error::Result;
 use clap::{Args, Subcommand};

@@ -1,6 +1,7 @@
 //! `glint samples plot`: sets of points to look at, side by side on a page, or one a file.
 
 use super::exhibits::Sets;
+use super::measure::Report;
 use crate::cli::{DONE, report};
 use crate::error::{Error, Result};
 use crate::image::{check_writable, write_png, write_whole};
@@ -68,8 +69,8 @@ pub(super) fn run(args: &Plot) -> Result<u8> {
         let _ = writeln!(io::stderr(), "wrote {}", names.join(", "));
     }
     if args.sets.json {
-        let measures: Vec<_> = exhibits.iter().map(|exhibit| &exhibit.measures).collect();
-        report::json(&measures)?;
+        let measures = exhibits.into_iter().map(|exhibit| exhibit.measures);
+        report::json(&Report::new(measures.collect(), Vec::new()))?;
     }
     Ok(DONE)
 }

@@ -79,7 +79,8 @@ fn gamma(text: &str) -> std::result::Result<f32, String> {
 
 /// What `--json` prints.
 #[derive(Serialize)]
-struct Summary<'a> {
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(in crate::cli) struct Summary<'a> {
     image: &'a Path,
     /// Pixels of the picture.
     size: [u32; 2],

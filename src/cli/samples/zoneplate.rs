@@ -61,7 +61,7 @@ pub(super) struct Zoneplate {
 /// How far a sampled picture is from the truth.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-struct Run {
+pub(in crate::cli) struct Run {
     sampler: &'static str,
     filter: String,
     samples_per_pixel: u64,
@@ -73,7 +73,7 @@ struct Run {
 /// What `--json` prints.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-struct Report {
+pub(in crate::cli) struct Report {
     /// Of glint.
     version: &'static str,
     /// Pixels along a side.

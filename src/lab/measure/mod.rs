@@ -30,6 +30,7 @@ use serde::Serialize;
 
 /// Everything that is measured of one set. Distances and `t_value` are `None` where they do not exist.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Measures {
     /// What the set is called.
     pub name: String,

@@ -10,6 +10,7 @@ use serde::Serialize;
 /// Bounds of a value: `low <= value <= high`, each to about 1e-12 for rounding. Equal when the value is
 /// exact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
 pub struct Bracket {
     /// No more than the value.
     pub low: f64,

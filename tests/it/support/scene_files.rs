@@ -44,6 +44,7 @@ pub(crate) struct Small {
     pub(crate) size: [u32; 2],
     pub(crate) spp: u64,
     pub(crate) seed: u64,
+    pub(crate) strategy: Strategy,
 }
 
 /// Every scene file of the repository.
@@ -127,7 +128,7 @@ impl FileScene {
     ) -> Rendered {
         let camera = world.camera(&self.cameras[0], small.size).expect("a camera");
         let filter = FilterSampler::new(Filter::default());
-        let sampler = Sampler::new(Strategy::Sobol, small.seed, small.spp);
+        let sampler = Sampler::new(small.strategy, small.seed, small.spp);
         let tracer = Tracer { world, accelerator, camera: &camera, filter: &filter, sampler, plan };
         let job = RenderJob {
             region: Region::full(small.size),
