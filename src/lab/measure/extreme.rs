@@ -298,13 +298,17 @@ mod tests {
         assert_eq!(extreme_discrepancy(&[]), Bracket::exact(1.0));
     }
 
+    /// Sets that are squeezed to a line reach their upper bounds nearly: the outermost column has its points
+    /// at one side.
     #[test]
     fn brackets_hold_the_exact_value() {
         for seed in 0..30 {
             let n = 2 + 23 * seed as usize;
-            for points in
-                [random_set(n, seed), random_tied_set(n, seed), hammersley(seed as u32 / 4)]
-            {
+            let even = random_set(n, seed);
+            let squeezed: Vec<_> = even.iter().map(|[x, y]| [0.5 + 1e-3 * x, *y]).collect();
+            let turned = squeezed.iter().map(|[x, y]| [*y, *x]).collect();
+            let tied = random_tied_set(n, seed);
+            for points in [even, squeezed, turned, tied, hammersley(seed as u32 / 4)] {
                 let exact = extreme_discrepancy(&points).low;
                 for grid in [1, 2, 7, 16, 64] {
                     let Bracket { low, high } = bracket(&points, grid);

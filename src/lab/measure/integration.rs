@@ -232,7 +232,7 @@ mod tests {
         // Errors of 1/4 and 0: the root of the mean square, not the mean.
         let mixed = |_, seed: u64| Ok(vec![[0.5, 1.0 - 0.5 * seed as f64]]);
         let mixed = convergence(mixed, Integrand::Bilinear, &[1], 2).unwrap();
-        assert_eq!(mixed.errors[0].rms_error, 0.25 / 2.0_f64.sqrt());
+        assert_eq!(mixed.errors[0].rms_error, 0.031_25_f64.sqrt());
         let one = convergence(strategy, Integrand::Bilinear, &[4], 3).unwrap();
         assert_eq!(one.slope, None);
         let none = convergence(strategy, Integrand::Bilinear, &[4, 8], 0).unwrap();
