@@ -3,8 +3,8 @@
 //! Source: the definition is in H. Niederreiter, Random Number Generation and Quasi-Monte Carlo Methods, SIAM
 //! 1992, section 2.1. Small sets: all strips between two coordinates, O(n^3) in the worst case; D. Dobkin, D.
 //! Gunopulos and W. Maass, Computing the maximum bichromatic discrepancy, 1996, do better for more points.
-//! Large sets: bounds from boxes on a grid of quantiles, in the manner of E. Thiémard, An algorithm to compute
-//! bounds for the star discrepancy, 2001. Knows nothing of who made the points.
+//! Large sets: bounds from boxes on a grid of quantiles, in the manner of E. Thiémard, An algorithm to
+//! compute bounds for the star discrepancy, 2001. Knows nothing of who made the points.
 
 use super::star::{Bracket, SLACK, star_discrepancy};
 use rayon::prelude::*;
@@ -147,8 +147,8 @@ fn bracket(points: &[[f64; 2]], grid: usize) -> Bracket {
     // below[a][j]: the fraction of points in [0, x_a) x [0, y_j).
     let mut below = vec![vec![0.0_f64; rows + 1]; columns + 1];
     for p in points {
-        let column = x.partition_point(|edge| *edge <= p[0]);
-        let row = y.partition_point(|edge| *edge <= p[1]);
+        let column = x.partition_point(|edge| *edge <= p[0]).min(columns);
+        let row = y.partition_point(|edge| *edge <= p[1]).min(rows);
         below[column][row] += 1.0;
     }
     for a in 0..=columns {
@@ -298,13 +298,17 @@ mod tests {
         assert_eq!(extreme_discrepancy(&[]), Bracket::exact(1.0));
     }
 
+    /// Sets that are squeezed to a line reach their upper bounds nearly: the outermost column has its points
+    /// at one side.
     #[test]
     fn brackets_hold_the_exact_value() {
         for seed in 0..30 {
             let n = 2 + 23 * seed as usize;
-            for points in
-                [random_set(n, seed), random_tied_set(n, seed), hammersley(seed as u32 / 4)]
-            {
+            let even = random_set(n, seed);
+            let squeezed: Vec<_> = even.iter().map(|[x, y]| [0.5 + 1e-3 * x, *y]).collect();
+            let turned = squeezed.iter().map(|[x, y]| [*y, *x]).collect();
+            let tied = random_tied_set(n, seed);
+            for points in [even, squeezed, turned, tied, hammersley(seed as u32 / 4)] {
                 let exact = extreme_discrepancy(&points).low;
                 for grid in [1, 2, 7, 16, 64] {
                     let Bracket { low, high } = bracket(&points, grid);

@@ -229,6 +229,10 @@ mod tests {
         let found = convergence(strategy, Integrand::Bilinear, &[4, 8, 64], 3).unwrap();
         assert!((found.slope.unwrap() + 1.0).abs() < 1e-12, "{found:?}");
         assert_eq!(found.errors[1], RmsError { count: 8.0, rms_error: 0.0625 });
+        // Errors of 1/4 and 0: the root of the mean square, not the mean.
+        let mixed = |_, seed: u64| Ok(vec![[0.5, 1.0 - 0.5 * seed as f64]]);
+        let mixed = convergence(mixed, Integrand::Bilinear, &[1], 2).unwrap();
+        assert_eq!(mixed.errors[0].rms_error, 0.031_25_f64.sqrt());
         let one = convergence(strategy, Integrand::Bilinear, &[4], 3).unwrap();
         assert_eq!(one.slope, None);
         let none = convergence(strategy, Integrand::Bilinear, &[4, 8], 0).unwrap();

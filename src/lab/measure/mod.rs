@@ -1,7 +1,8 @@
 //! Measures of point sets: discrepancies, distances, projections, nets, spectra, errors of integration.
 //!
-//! A set is a slice of points of the unit square, values in [0, 1). Each measure is a file with its source.
-//! None knows which strategy made the set. Results have the same bits for any number of threads.
+//! A set is a slice of points of the unit square, values in [0, 1); of others results mean nothing. Each
+//! measure is a file with its source. None knows which strategy made the set. Results have the same bits for
+//! any number of threads.
 
 mod envelope;
 mod extreme;

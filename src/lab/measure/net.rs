@@ -24,9 +24,9 @@ fn is_balanced(points: &[[f64; 2]], i: u32, j: u32, counts: &mut [usize]) -> boo
     let each = points.len() / counts.len();
     counts.fill(0);
     points.iter().all(|[x, y]| {
-        let column = (x * f64::from(1_u32 << i)) as usize;
-        let row = (y * f64::from(1_u32 << j)) as usize;
-        let count = &mut counts[(row << i) + column];
+        let cell =
+            |v: f64, bits: u32| ((v * f64::from(1_u32 << bits)) as usize).min((1 << bits) - 1);
+        let count = &mut counts[(cell(*y, j) << i) + cell(*x, i)];
         *count += 1;
         *count <= each
     })

@@ -12,8 +12,9 @@ use std::f64::consts::{LN_10, TAU};
 /// Points whose powers are tabulated at a time.
 const BATCH: usize = 256;
 
-/// Power below which a ring has nothing but roundings.
-const DARK: f64 = 1e-18;
+/// Power below which a ring has nothing but roundings, of points in `f32` as well: up to 128 cycles they make
+/// (2 pi 128)^2 2^-48/12, which is 2e-10.
+const DARK: f64 = 1e-8;
 
 /// P(k) = |sum over points of exp(-2 pi i k.p)|^2 / n at whole frequencies k = (k_x, k_y), cycles across the
 /// unit square. P(-k) = P(k). Independent points have the mean 1 everywhere but at P(0) = n.

@@ -1,8 +1,9 @@
 //! Star discrepancy: the worst box with a corner at the origin.
 //!
-//! Source: the finite form of the supremum is H. Niederreiter's (1972); that convex hulls which
-//! change with the points spare most of the n^2 boxes was shown by D. Dobkin and D. Eppstein, Computing the
-//! discrepancy, SoCG 1993. Here it takes O(n sqrt n) with [`super::envelope`]. Knows nothing of who made the points.
+//! Source: the finite form of the supremum is H. Niederreiter's (1972); that convex hulls which change
+//! with the points spare most of the n^2 boxes was shown by D. Dobkin and D. Eppstein, Computing the
+//! discrepancy, SoCG 1993. With [`super::envelope`] it takes O(n sqrt n). Knows nothing of who made the
+//! points.
 
 use super::envelope::Envelope;
 use serde::Serialize;
