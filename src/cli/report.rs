@@ -16,6 +16,7 @@ use crate::image::{Attribute, write_whole};
 use crate::math::DVec3;
 use crate::os::Isa;
 use crate::render::{Bill, ClassRow, Forecast, Rendered};
+use crate::sampling::{Sampler, Strategy};
 use crate::scene::{self, Effect};
 use crate::study::report::render_page;
 use crate::trace::PixelSample;
@@ -86,6 +87,19 @@ pub(super) fn print(text: &str) -> Result<()> {
     }
 }
 
+/// What `--sampler grid` does to an image.
+const GRID_BIAS: &str =
+    "the grid is not randomised: the image is biased, and its noise says nothing of its error";
+
+/// The strategy; and the size of its sets, after which it begins anew, where it cannot go on for ever.
+fn sampler(settings: &Settings) -> String {
+    let name = settings.sampler.name();
+    match Sampler::set_size(settings.sampler, settings.samples_per_pixel) {
+        Some(size) => format!("{name} (sets of {size})"),
+        None => name.to_owned(),
+    }
+}
+
 /// What will be rendered, defaults included.
 pub(super) fn choices(
     args: &Render,
@@ -103,14 +117,18 @@ pub(super) fn choices(
     say(
         args,
         &format!(
-            "{} triangles, {} emissive; {width}x{height}, {} spp, effects {}, {depth}, seed {}",
+            "{} triangles, {} emissive; {width}x{height}, {} spp, sampler {}, effects {}, {depth}, seed {}",
             world.geometry.placed_triangles(),
             world.lights.emitter_count(),
             settings.samples_per_pixel,
+            sampler(settings),
             settings.effects,
             settings.seed
         ),
     );
+    if settings.sampler == Strategy::Grid {
+        say(args, &format!("warning: {GRID_BIAS}"));
+    }
     say(
         args,
         &format!(
@@ -234,6 +252,11 @@ pub(super) fn metadata(
             text(if low == high { low.to_string() } else { format!("{low}..{high}") }),
         ),
         ("glint.seed", text(settings.seed.to_string())),
+        ("glint.sampler", text(sampler(settings))),
+        (
+            "glint.bias",
+            text(if settings.sampler == Strategy::Grid { GRID_BIAS } else { "none" }.into()),
+        ),
         ("glint.effects", text(settings.effects.to_string())),
         ("glint.simulated", text(listed(&simulated))),
         ("glint.lacks", text(listed(&lacks))),

@@ -7,7 +7,7 @@
 
 use crate::filter::{Filter, FilterSampler};
 use crate::math::fun::double;
-use crate::sampling::{Dimension, Sampler};
+use crate::sampling::{Dimension, REPLICATES, Sampler, Strategy};
 use rayon::prelude::*;
 
 /// A square picture of `L(x, y) = (1 + sin((x^2 + y^2) / 100)) / 2`, x to the right and y upwards from the lower left
@@ -27,13 +27,22 @@ impl ZonePlate {
         0.5 + 0.5 * double::sin(PHASE * (x * x + y * y))
     }
 
-    /// The picture as a render would make it: for each pixel the mean of `samples` weighted samples of its filter. Row-major,
-    /// top row first.
-    pub fn sampled(&self, sampler: &Sampler, filter: &FilterSampler, samples: u64) -> Vec<f64> {
+    /// For each pixel the mean of `samples` weighted samples of its filter: one set of a strategy, where a render takes one for
+    /// each of its replicates. Row-major, top row first.
+    pub fn sampled(
+        &self,
+        strategy: Strategy,
+        seed: u64,
+        filter: &FilterSampler,
+        samples: u64,
+    ) -> Vec<f64> {
+        // The samples of one replicate; a grid has but one.
+        let replicates = if strategy == Strategy::Grid { 1 } else { REPLICATES as u64 };
+        let sampler = Sampler::new(strategy, seed, samples * replicates);
         self.pixels(|column, row| {
             let mut sum = 0.0;
             for sample in 0..samples {
-                let key = sampler.path(column, row, sample);
+                let key = sampler.path(column, row, sample * replicates);
                 let ([dx, dy], weight) = filter.sample(sampler.two(key, Dimension::Film));
                 let [x, y] = self.center(column, row);
                 sum += f64::from(weight) * Self::radiance(x + f64::from(dx), y - f64::from(dy));
@@ -109,7 +118,6 @@ pub fn rms_difference(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::Strategy;
 
     /// The box filter's integral along an axis is a Fresnel integral; here against a sum of a million terms.
     #[test]
@@ -152,7 +160,7 @@ mod tests {
             let (exact, draw) = (plate.exact(filter), FilterSampler::new(filter));
             for strategy in Strategy::ALL.iter().filter(|s| s.can_render() && **s != Strategy::Grid)
             {
-                let image = plate.sampled(&Sampler::new(*strategy, 0, 32), &draw, 32);
+                let image = plate.sampled(*strategy, 0, &draw, 32);
                 // Against a slope of the picture, so that a displacement shows.
                 let slope =
                     |i: usize| exact[(i + 1).min(exact.len() - 1)] - exact[i.saturating_sub(1)];
@@ -180,7 +188,7 @@ mod tests {
         let filter = Filter::parse("box").unwrap();
         let (exact, draw) = (plate.exact(filter), FilterSampler::new(filter));
         let correlation = |strategy| {
-            let image = plate.sampled(&Sampler::new(strategy, 0, 1), &draw, 1);
+            let image = plate.sampled(strategy, 0, &draw, 1);
             let error = |x: usize, y: usize| image[y * 400 + x] - exact[y * 400 + x];
             let (mut product, mut square) = (0.0, 0.0);
             for y in 375..400 {

@@ -54,42 +54,53 @@ impl Sampler {
             Strategy::BoundedVoronoi => Strategy::CentroidalVoronoi,
             strategy => strategy,
         };
+        let size = Self::set_size(strategy, samples_per_pixel);
+        let count = size.unwrap_or(1) as u32;
+        let table =
+            || strategy.points(count, seed).map(|set| set.points.into()).unwrap_or_default();
+        let source = match strategy {
+            Strategy::Random => Source::Random,
+            Strategy::Sobol => Source::Sobol,
+            Strategy::Halton => Source::Halton,
+            Strategy::ScreenSobol => Source::ScreenSobol(count.trailing_zeros()),
+            Strategy::Pmj02 => Source::Pmj02(table()),
+            Strategy::Hammersley => Source::Shifted(table()),
+            _ => match Formula::new(strategy, count) {
+                Some(formula) => Source::Sets(formula),
+                None => Source::Shifted(table()),
+            },
+        };
+        let endless = if strategy == Strategy::Halton { halton::LENGTH } else { 1 << 32 };
+        let size = size.unwrap_or(endless);
+        Self { strategy, seed: mix64(seed ^ 0x676c_696e_7400_0001), size, source }
+    }
+
+    /// How many points a set has for renders of `samples_per_pixel`; `None` for strategies that take no sets.
+    pub fn set_size(strategy: Strategy, samples_per_pixel: u64) -> Option<u64> {
         let share = samples_per_pixel.div_ceil(REPLICATES as u64);
-        let max = u64::from(Strategy::MAX_COUNT);
-        let (source, size) = match strategy {
-            Strategy::Random => (Source::Random, 1 << 32),
-            Strategy::Sobol => (Source::Sobol, 1 << 32),
-            Strategy::Halton => (Source::Halton, halton::LENGTH),
-            Strategy::ScreenSobol => {
-                let size = share.clamp(1, max).next_power_of_two();
-                (Source::ScreenSobol(size.trailing_zeros()), size)
-            }
+        let up_to = |max: u32, n: u64| n.clamp(1, max.into()) as u32;
+        let size = match strategy {
+            Strategy::Random | Strategy::Sobol | Strategy::Halton => return None,
             // Not randomised, the replicates of a grid would be the same: they share one.
-            Strategy::Grid => sets(strategy, samples_per_pixel.clamp(1, max) as u32),
+            Strategy::Grid => up_to(Strategy::MAX_COUNT, samples_per_pixel),
+            Strategy::ScreenSobol => up_to(Strategy::MAX_COUNT, share).next_power_of_two(),
+            Strategy::Pmj02 => up_to(Self::MAX_TABLE, share).next_power_of_two(),
             Strategy::Jittered
             | Strategy::NRooks
             | Strategy::MultiJittered
-            | Strategy::CorrelatedMultiJittered => sets(strategy, share.clamp(1, max) as u32),
-            Strategy::Pmj02 => {
-                let size = share.clamp(1, Self::MAX_TABLE.into()).next_power_of_two();
-                (Source::Pmj02(table(strategy, size as u32, seed)), size)
+            | Strategy::CorrelatedMultiJittered => {
+                let wanted = up_to(Strategy::MAX_COUNT, share);
+                // A square number is near, and the largest is one.
+                (wanted..=Strategy::MAX_COUNT).find(|n| strategy.allows(*n)).unwrap_or(wanted)
             }
-            _ => {
-                let size = share.clamp(1, Self::MAX_TABLE.into());
-                (Source::Shifted(table(strategy, size as u32, seed)), size)
-            }
+            _ => up_to(Self::MAX_TABLE, share),
         };
-        Self { strategy, seed: mix64(seed ^ 0x676c_696e_7400_0001), size, source }
+        Some(size.into())
     }
 
     /// How it samples.
     pub fn strategy(&self) -> Strategy {
         self.strategy
-    }
-
-    /// Points of a set, where it takes sets.
-    pub fn set_size(&self) -> Option<u64> {
-        (!self.strategy.is_progressive()).then_some(self.size)
     }
 
     /// The key of sample `sample` of pixel (x, y).
@@ -185,17 +196,6 @@ impl Sampler {
     }
 }
 
-/// The first size from `wanted` on that the strategy has sets of.
-fn sets(strategy: Strategy, wanted: u32) -> (Source, u64) {
-    let allowed = (wanted..).find_map(|n| Some((Formula::new(strategy, n)?, n)));
-    let (formula, size) = allowed.unwrap_or((Formula::Random, wanted));
-    (Source::Sets(formula), size.into())
-}
-
-fn table(strategy: Strategy, count: u32, seed: u64) -> Arc<[[Fraction; 2]]> {
-    strategy.points(count, seed).map(|set| set.points.into()).unwrap_or_default()
-}
-
 /// Which sample of which pixel; with a [`Sampler`], all numbers of a path.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SampleKey {
@@ -238,7 +238,7 @@ mod tests {
             // Wholes of 64 numbers: single ones may well be the same.
             let of = |seed, x, y, block: u64, replicate, dimension| {
                 let sampler = Sampler::new(strategy, seed, 256);
-                let size = sampler.set_size().unwrap_or(1 << 32) * REPLICATES as u64;
+                let size = Sampler::set_size(strategy, 256).unwrap_or(1 << 32) * REPLICATES as u64;
                 let first = block * size + replicate;
                 (0..64)
                     .map(|s| sampler.two(sampler.path(x, y, first + 4 * s), dimension))

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::filter::{Filter, FilterKind, FilterSampler};
 use crate::image::{check_writable, srgb, write_png};
 use crate::lab::zone_plate::{ZonePlate, rms_difference};
-use crate::sampling::{Sampler, Strategy};
+use crate::sampling::Strategy;
 use clap::Args;
 use serde::Serialize;
 use std::io::{self, Write};
@@ -130,9 +130,9 @@ fn sampled(
     seed: u64,
     truth: &[f64],
 ) -> (Vec<f64>, Run) {
-    let (sampler, draw) = (Sampler::new(strategy, seed, samples), FilterSampler::new(filter));
+    let draw = FilterSampler::new(filter);
     let start = Instant::now();
-    let pixels = plate.sampled(&sampler, &draw, samples);
+    let pixels = plate.sampled(strategy, seed, &draw, samples);
     let seconds = start.elapsed().as_secs_f64();
     let rmse = rms_difference(&pixels, truth);
     (pixels, Run { rmse, seconds, ..Run::new(strategy, filter, samples) })
