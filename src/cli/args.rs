@@ -106,8 +106,8 @@ pub(super) struct Render {
     /// (glint plan --help names them all) [default: auto]
     #[arg(long, value_name = "NAME,...", help_heading = "Image")]
     pub(super) effects: Option<Effects>,
-    /// Sampler of pixels and paths: sobol, sobol-blue-noise, halton, pmj02, jittered, random and more (glint samples
-    /// plot --help names them all) [default: sobol]
+    /// Sampler: sobol, sobol-blue-noise, pmj02, halton, hammersley, jittered, multi-jittered, correlated-multi-jittered,
+    /// n-rooks, poisson-disk, dart-throwing, centroidal-voronoi, blue-noise, random, or grid (biased) [default: sobol]
     #[arg(long, value_name = "NAME", value_parser = sampler, help_heading = "Image")]
     pub(super) sampler: Option<Strategy>,
     /// Pixel filter: box, tent, gaussian, mitchell, blackman-harris or lanczos [default: blackman-harris]

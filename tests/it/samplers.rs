@@ -6,7 +6,7 @@ use crate::support::effort;
 use crate::support::scene_files::{Backend, FileScene, Small};
 use crate::support::scenes::{cornell, cornell_shot, mean, zoo, zoo_shot};
 use crate::support::shot::Shot;
-use crate::support::z_test::assert_difference;
+use crate::support::z_test::assert_mean_power;
 use glint::sampling::Strategy;
 use glint::world::World;
 use std::path::Path;
@@ -20,12 +20,11 @@ fn unbiased() -> impl Iterator<Item = Strategy> {
     samplers().filter(|strategy| *strategy != Strategy::Grid)
 }
 
-/// Mean luminance of pictures under many seeds against that of random numbers under the same seeds. 14 samplers, three
-/// scenes; limits as in `z_test`; an error of 4 % of the light is found, 1 % in the thorough tier.
+/// Mean luminance of pictures under many seeds against that of pictures of 25 times as many samples. 14 samplers, three scenes; limits as in `z_test`; an error of 6 % of the light is found, 2 % in the thorough tier.
 #[test]
 fn every_sampler_but_the_grid_is_unbiased() {
-    let power = effort(4, 1) as f64 / 100.0;
-    let seeds = effort(80, 640) as u64;
+    let power = effort(6, 2) as f64 / 100.0;
+    let seeds = effort(100, 900) as u64;
     let depth_of_field =
         FileScene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/effects/lens.toml"));
     let (lens_world, lens_plan) = depth_of_field.plan("auto");
@@ -46,15 +45,13 @@ fn every_sampler_but_the_grid_is_unbiased() {
         ("lens", Box::new(of_lens)),
     ];
     for (name, picture) in &pictures {
-        let random: Vec<f64> =
-            (0..seeds).map(|seed| picture(Strategy::Random, seed + seeds)).collect();
+        // Random numbers for a reference: what a set could get wrong is not in it.
+        let references = 25 * seeds;
+        let reference = (0..references).map(|seed| picture(Strategy::Random, 1_000_000 + seed));
+        let truth = reference.sum::<f64>() / references as f64;
         for strategy in unbiased() {
-            let pairs: Vec<[f64; 2]> = random
-                .iter()
-                .zip(0..seeds)
-                .map(|(r, seed)| [picture(strategy, seed), *r])
-                .collect();
-            assert_difference(&format!("{name}, {}", strategy.name()), &pairs, power);
+            let samples = (0..seeds).map(|seed| picture(strategy, seed));
+            assert_mean_power(&format!("{name}, {}", strategy.name()), samples, truth, power);
         }
     }
 }
@@ -115,5 +112,5 @@ fn blue_noise_on_the_screen_is_blue() {
     };
     let (plain, screen) = (errors(Strategy::Sobol), errors(Strategy::ScreenSobol));
     assert!((0.8..1.2).contains(&(screen.0 / plain.0)), "pixel by pixel {}", screen.0 / plain.0);
-    assert!(screen.1 / plain.1 < 0.75, "blurred {}", screen.1 / plain.1);
+    assert!(screen.1 / plain.1 < 0.88, "blurred {}", screen.1 / plain.1);
 }
