@@ -2,7 +2,7 @@
 //! error of renders at equal samples.
 //!
 //! `cargo bench --bench samplers` prints Markdown tables of the first two; with names of scenes behind `--`, or `all`, of the
-//! third: relative RMS error against a picture of 2048 Sobol samples of another seed, mean over seeds 0 to 3. Times are
+//! third: relative RMS error against a picture of 2048 Sobol samples of the next seed, mean over seeds 0 to 3. Times are
 //! medians of turns that the samplers take one after the other.
 
 #[cfg(feature = "bvh")]
@@ -151,7 +151,7 @@ fn errors(path: &Path) -> Result<()> {
         };
         Ok(render(&tracer, &job, &|_| ())?.film.develop().radiance)
     };
-    let truth = picture(Strategy::Sobol, 1000, 2048)?;
+    let truth = picture(Strategy::Sobol, SEEDS, 2048)?;
     let values = |picture: &[Rgb]| -> Vec<f64> {
         picture.iter().flat_map(|p| p.to_array()).map(f64::from).collect()
     };
