@@ -36,6 +36,7 @@ mod media;
 mod obj;
 mod oracle;
 mod samplers;
+mod samples_commands;
 mod scene_file;
 mod scene_file_errors;
 mod statistics;

@@ -58,6 +58,11 @@ fn strategies(text: &str) -> std::result::Result<Strategies, String> {
 }
 
 impl Sets {
+    /// Files of points.
+    pub(super) fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
     /// The strategies that are wanted and have sets of the wanted size.
     ///
     /// # Errors
@@ -116,10 +121,5 @@ pub(super) fn bar(steps: usize, quiet: bool) -> ProgressBar {
 
 fn points(file: &Path) -> Result<Vec<[f64; 2]>> {
     let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, "read", e))?;
-    let points = points_from_text(&text, &file.display().to_string())?;
-    if points.is_empty() {
-        let message = format!("{}: there are no points in it", file.display());
-        return Err(Error::Usage(message));
-    }
-    Ok(points)
+    points_from_text(&text, &file.display().to_string())
 }

@@ -2,6 +2,7 @@
 
 use super::exhibits::Sets;
 use super::measure::Report;
+use crate::cli::output::identity;
 use crate::cli::{DONE, report};
 use crate::error::{Error, Result};
 use crate::image::{check_writable, write_png, write_whole};
@@ -42,7 +43,19 @@ enum Format {
 pub(super) fn run(args: &Plot) -> Result<u8> {
     let formats: Vec<Format> =
         args.output.iter().map(|path| format(path)).collect::<Result<_>>()?;
-    args.output.iter().try_for_each(|path| check_writable(path))?;
+    let mut taken: Vec<PathBuf> = args.sets.files().iter().map(|file| identity(file)).collect();
+    for path in &args.output {
+        // A drawing over a file of points, or two in one place, would lose one of them.
+        let same = identity(path);
+        if taken.contains(&same) {
+            let name = path.display();
+            let message =
+                format!("-o {name}: it is read, or would be written twice; name another file");
+            return Err(Error::Usage(message));
+        }
+        taken.push(same);
+        check_writable(path)?;
+    }
     let exhibits = args.sets.exhibits()?;
     let mut written = Vec::new();
     for (path, format) in args.output.iter().zip(formats) {

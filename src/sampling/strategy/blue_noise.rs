@@ -16,7 +16,7 @@ pub(super) fn points(count: u32, seed: u64) -> PointSet {
     // Begin with random cells.
     while field.taken.iter().filter(|t| **t).count() < count as usize {
         let [high, _] = random_point(&mut rng);
-        let cell = (u64::from(high) * field.taken.len() as u64 >> 32) as usize;
+        let cell = ((u64::from(high) * field.taken.len() as u64) >> 32) as usize;
         if !field.taken[cell] {
             field.set(cell, true);
         }

@@ -30,7 +30,7 @@ pub(super) fn in_stratum(i: u32, n: u32, offset: Fraction) -> Fraction {
 pub(super) fn within([start, end]: [u32; 2], n: u32, offset: Fraction) -> Fraction {
     let bound = |i: u32| (u64::from(i) << 32).div_ceil(u64::from(n));
     let (start, end) = (bound(start), bound(end));
-    (start + (u64::from(offset) * (end - start) >> 32)) as u32
+    (start + ((u64::from(offset) * (end - start)) >> 32)) as u32
 }
 
 /// Squared distance on the torus, in units of 2^-64.
@@ -54,7 +54,11 @@ mod tests {
             for i in [0, n / 3, n / 2, n - 1] {
                 for offset in [0, 1, HALF, u32::MAX] {
                     let x = in_stratum(i, n, offset);
-                    assert_eq!(u64::from(x) * u64::from(n) >> 32, u64::from(i), "{i}/{n} {offset}");
+                    assert_eq!(
+                        (u64::from(x) * u64::from(n)) >> 32,
+                        u64::from(i),
+                        "{i}/{n} {offset}"
+                    );
                 }
             }
         }

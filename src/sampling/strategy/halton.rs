@@ -56,7 +56,7 @@ fn shuffled(i: u32, seed: u64) -> u32 {
         rest %= unit;
         // A permutation of six as one of its halves and one of its thirds.
         let hash = digits_so_far >> 32;
-        let half = digit % 2 ^ hash & 1;
+        let half = (digit % 2) ^ hash & 1;
         let third = PERMUTATIONS_OF_3[(hash >> 1) as usize % 6][(digit / 2) as usize];
         result += unit * (2 * u64::from(third) + half);
         digits_so_far = combine(digits_so_far, digit);
@@ -100,8 +100,8 @@ mod tests {
                     let mut seen = vec![false; (columns * rows) as usize];
                     for i in 0..6_u32.pow(k) {
                         let [x, y] = scrambled(block * 6_u32.pow(k) + i, combine(7, seed));
-                        let column = u64::from(x) * columns >> 32;
-                        let row = u64::from(y) * rows >> 32;
+                        let column = (u64::from(x) * columns) >> 32;
+                        let row = (u64::from(y) * rows) >> 32;
                         let cell = (column * rows + row) as usize;
                         assert!(!seen[cell], "seed {seed}, block {block} of 6^{k}");
                         seen[cell] = true;

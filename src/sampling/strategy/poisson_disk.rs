@@ -136,7 +136,7 @@ impl Grid {
     }
 
     fn cell(&self, point: [Fraction; 2]) -> usize {
-        let [x, y] = point.map(|c| (u64::from(c) * u64::from(self.side) >> 32) as usize);
+        let [x, y] = point.map(|c| ((u64::from(c) * u64::from(self.side)) >> 32) as usize);
         y * self.side as usize + x
     }
 
@@ -190,7 +190,7 @@ impl Grid {
 /// A uniform number below `n`.
 fn below(rng: &mut CounterRng, n: usize) -> usize {
     let [high, _] = super::random_point(rng);
-    (u64::from(high) * n as u64 >> 32) as usize
+    ((u64::from(high) * n as u64) >> 32) as usize
 }
 
 #[cfg(test)]

@@ -16,8 +16,8 @@ fn fills(points: &[[Fraction; 2]], columns: u32, rows: u32) -> bool {
     let mut seen = vec![false; (columns * rows) as usize];
     points.len() == seen.len()
         && points.iter().all(|[x, y]| {
-            let column = u64::from(*x) * u64::from(columns) >> 32;
-            let row = u64::from(*y) * u64::from(rows) >> 32;
+            let column = (u64::from(*x) * u64::from(columns)) >> 32;
+            let row = (u64::from(*y) * u64::from(rows)) >> 32;
             !std::mem::replace(&mut seen[(row * u64::from(columns) + column) as usize], true)
         })
 }
@@ -83,7 +83,7 @@ fn only_correlated_sets_are_correlated() {
     let places = |strategy, seed| {
         let mut columns = [[0; 8]; 8];
         for [x, y] in points(strategy, 64, seed) {
-            let (fine, row) = (u64::from(x) * 64 >> 32, u64::from(y) * 8 >> 32);
+            let (fine, row) = ((u64::from(x) * 64) >> 32, (u64::from(y) * 8) >> 32);
             columns[(fine / 8) as usize][row as usize] = fine % 8;
         }
         columns
