@@ -19,7 +19,7 @@ pub struct Exhibit {
     pub facts: Vec<(&'static str, f64)>,
     /// Of this set; its name as well.
     pub measures: Measures,
-    /// The mean of this set's and of those of the seeds after its own, [`Exhibit::SPECTRA`] in all.
+    /// The mean of this set's and of those of the seeds after its own, ten in all.
     pub spectrum: Periodogram,
 }
 

@@ -1,7 +1,7 @@
 //! A counter-based generator for set-up work and tests, usable with every `rand` adaptor.
 //!
 //! Value n of a stream is a hash of (seed, n): the stream is the same on every machine and can be
-//! entered anywhere. Paths do not use it; they draw by name from [`super::PathSampler`].
+//! entered anywhere. Paths do not use it; they draw by name from [`super::Sampler`].
 
 use super::hash::{combine, mix64};
 use std::convert::Infallible;
