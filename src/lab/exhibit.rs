@@ -17,6 +17,8 @@ pub struct Exhibit {
     pub domain: Domain,
     /// What making it took: counts and lengths by name.
     pub facts: Vec<(&'static str, f64)>,
+    /// The energy that each step of a relaxation began with; empty for other sets.
+    pub energies: Vec<f64>,
     /// Of this set; its name as well.
     pub measures: Measures,
     /// The mean of this set's and of those of the seeds after its own, ten in all.
@@ -45,6 +47,7 @@ impl Exhibit {
             description: strategy.description(),
             domain: if is_bounded { Domain::Square } else { Domain::Torus },
             facts: set.facts,
+            energies: set.energies,
             measures: measure(strategy.name(), &points),
             spectrum: Periodogram::mean_of(&spectral, spectrum_limit(points.len())),
             points,
@@ -57,6 +60,7 @@ impl Exhibit {
             description: "",
             domain: Domain::Square,
             facts: Vec::new(),
+            energies: Vec::new(),
             measures: measure(name, &points),
             spectrum: Periodogram::new(&points, spectrum_limit(points.len())),
             points,

@@ -15,8 +15,8 @@ pub const COLUMNS: [Column; 12] = [
     ("mixture", |m| number(m.mixture)),
     ("smallest distance", |m| optional(m.relative_min_distance)),
     ("mean distance", |m| optional(m.relative_mean_distance)),
-    ("x", |m| format!("{:.2}", m.projection_x)),
-    ("y", |m| format!("{:.2}", m.projection_y)),
+    ("x strata", |m| format!("{:.2}", m.projection_x)),
+    ("y strata", |m| format!("{:.2}", m.projection_y)),
     ("t", |m| m.t_value.map_or("-".into(), |t| t.to_string())),
     ("anisotropy", |m| m.anisotropy.map_or("-".into(), |a| format!("{a:.1} dB"))),
 ];

@@ -49,10 +49,7 @@ pub(super) fn points(count: u32, seed: u64) -> PointSet {
         let (column, row) = (*cell as u32 % side, *cell as u32 / side);
         [in_stratum(column, side, offset[0]), in_stratum(row, side, offset[1])]
     });
-    PointSet {
-        points: points.collect(),
-        facts: vec![("moves", moves as f64), ("grid", f64::from(side))],
-    }
+    PointSet::new(points.collect(), vec![("moves", moves as f64), ("grid", f64::from(side))])
 }
 
 /// Which cells of a grid on the torus hold a point, and how crowded each cell is: the sum of a Gaussian around every point.

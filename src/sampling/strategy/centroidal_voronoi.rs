@@ -26,5 +26,5 @@ pub(super) fn points(count: u32, domain: Domain, seed: u64) -> PointSet {
         ("energy at first", energy(energies.first())),
         ("energy at last", energy(energies.last())),
     ];
-    PointSet { points, facts }
+    PointSet { points, facts, energies }
 }

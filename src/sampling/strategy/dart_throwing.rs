@@ -41,5 +41,5 @@ pub(super) fn points(count: u32, seed: u64) -> PointSet {
         ("darts", darts as f64),
         ("distances", comparisons as f64),
     ];
-    PointSet { points, facts }
+    PointSet::new(points, facts)
 }

@@ -77,6 +77,14 @@ pub struct PointSet {
     pub points: Vec<[Fraction; 2]>,
     /// Counts and lengths by name: darts, radius, steps.
     pub facts: Vec<(&'static str, f64)>,
+    /// Of sets that are relaxed: the energy that each step began with ([`super::voronoi::relax`]).
+    pub energies: Vec<f64>,
+}
+
+impl PointSet {
+    fn new(points: Vec<[Fraction; 2]>, facts: Vec<(&'static str, f64)>) -> Self {
+        Self { points, facts, energies: Vec::new() }
+    }
 }
 
 impl Strategy {
@@ -100,7 +108,7 @@ impl Strategy {
                 let seed = mix64(seed ^ 0x7374_7261_7465_6779);
                 let formula = Formula::new(self, count);
                 let points = formula.map(|f| (0..count).map(|i| f.point(i, seed)).collect());
-                PointSet { points: points.unwrap_or_default(), facts: Vec::new() }
+                PointSet::new(points.unwrap_or_default(), Vec::new())
             }
         })
     }

@@ -30,7 +30,7 @@ pub(super) fn points(count: u32, seed: u64) -> PointSet {
     }
     points.truncate(count as usize);
     let again = attempts - u64::from(doublings);
-    PointSet { points, facts: vec![("doublings begun again", again as f64)] }
+    PointSet::new(points, vec![("doublings begun again", again as f64)])
 }
 
 /// The points that make 2^(m+1) of 2^m; `None` if it comes to a dead end.

@@ -64,7 +64,7 @@ pub(super) fn points(count: u32, seed: u64) -> PointSet {
         ("radius given up", f64::from(radius.times_shrunk())),
         ("darts", darts as f64),
     ];
-    PointSet { points, facts }
+    PointSet::new(points, facts)
 }
 
 /// Adds points until there are `count`; whether there are.
