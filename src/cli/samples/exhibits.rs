@@ -9,6 +9,9 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::path::{Path, PathBuf};
 
+/// The most points that are measured: half a minute of pairwise sums.
+const MOST_POINTS: i64 = 1 << 17;
+
 /// Options that name sets.
 #[derive(Debug, Args)]
 pub(super) struct Sets {
@@ -19,9 +22,9 @@ pub(super) struct Sets {
     /// [default: all, unless there are files]
     #[arg(long, value_name = "NAME,...", value_parser = strategies)]
     sampler: Option<Strategies>,
-    /// Points of a set
+    /// Points of a set, at most 131072: measuring takes a time that grows with their square
     #[arg(short = 'n', long, value_name = "N", default_value_t = 256,
-          value_parser = clap::value_parser!(u32).range(1..=i64::from(Strategy::MAX_COUNT)))]
+          value_parser = clap::value_parser!(u32).range(1..=MOST_POINTS))]
     pub(super) count: u32,
     /// Random seed
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -121,5 +124,12 @@ pub(super) fn bar(steps: usize, quiet: bool) -> ProgressBar {
 
 fn points(file: &Path) -> Result<Vec<[f64; 2]>> {
     let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, "read", e))?;
-    points_from_text(&text, &file.display().to_string())
+    let points = points_from_text(&text, &file.display().to_string())?;
+    if points.len() as i64 > MOST_POINTS {
+        let (name, count) = (file.display(), points.len());
+        return Err(Error::Usage(format!(
+            "{name}: {count} points; measuring takes a time that grows with their square, and {MOST_POINTS} are the most"
+        )));
+    }
+    Ok(points)
 }

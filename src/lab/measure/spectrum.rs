@@ -95,7 +95,7 @@ impl Periodogram {
     pub fn anisotropy_decibels(&self) -> Option<f64> {
         let rings: Vec<f64> = self.rings().iter().filter_map(|ring| ring.anisotropy).collect();
         let mean = mean(&rings);
-        (mean > 0.0).then(|| 10.0 * ln(mean) / LN_10)
+        (mean > DARK).then(|| 10.0 * ln(mean) / LN_10)
     }
 }
 
