@@ -21,7 +21,7 @@ pub struct Exhibit {
     pub energies: Vec<f64>,
     /// Of this set; its name as well.
     pub measures: Measures,
-    /// The mean of this set's and of those of the seeds after its own, ten in all.
+    /// The mean of this set's and of those of the seeds after its own, up to ten in all.
     pub spectrum: Periodogram,
 }
 
@@ -39,8 +39,8 @@ impl Exhibit {
         let points: Vec<[f64; 2]> = set.points.iter().map(|p| p.map(to_f64)).collect();
         let sets = Self::SPECTRA.min((Self::SPECTRAL_POINTS / points.len()) as u64).max(1);
         let mut spectral = vec![points.clone()];
-        for seed in (seed + 1..seed + sets).filter(|_| strategy.is_random()) {
-            spectral.push(unit_points(strategy, count, seed)?);
+        for k in (1..sets).filter(|_| strategy.is_random()) {
+            spectral.push(unit_points(strategy, count, seed.wrapping_add(k))?);
         }
         let is_bounded = strategy == Strategy::BoundedVoronoi;
         Ok(Self {
@@ -66,6 +66,14 @@ impl Exhibit {
             points,
         }
     }
+}
+
+/// The measures of a strategy's set alone.
+///
+/// # Errors
+/// As [`Strategy::points`].
+pub fn measured(strategy: Strategy, count: u32, seed: u64) -> Result<Measures> {
+    Ok(measure(strategy.name(), &unit_points(strategy, count, seed)?))
 }
 
 /// How the error of integrating falls with the number of points.

@@ -1,16 +1,20 @@
 //! The samplers of paths: seed, pixel, sample and dimension to numbers in [0, 1).
 //!
 //! A sample number is (replicate, index in replicate): the replicates are independently randomised, so the spread
-//! between their images measures the error. Strategies that go on for ever are padded: every dimension has
-//! its own scramble and its own order. Of the others a replicate takes one set of points after
-//! another, each used in a random order of its own for every pixel and dimension, and randomised in
-//! a way that keeps what the strategy is about: random strata as they are, deterministic and relaxed sets
-//! shifted around the torus (R. Cranley and T. N. L. Patterson, SIAM Journal on Numerical Analysis 13(6),
-//! 1976), (0,2)-nets by exclusive or.
+//! between their images measures the error. Strategies that go on for ever (random, Sobol, Halton) are padded: every
+//! dimension has its own scramble and its own order. Of the others a replicate takes sets of points, in a random
+//! order of its own for every pixel and dimension (pmj02 points within each doubling), and randomised so that
+//! what the strategy is about stays: random strata are drawn anew, relaxed sets of one table are rotated around the
+//! torus (R. Cranley and T. N. L. Patterson, SIAM Journal on Numerical Analysis 13(6), 1976), (0,2)-nets
+//! are digitally shifted or scrambled.
+//!
+//! What padding costs: a nested shuffle keeps points 2i and 2i + 1 together, which are in opposite halves of every
+//! dimension; so products of two dimensions have up to twice the variance that random numbers give them.
 
 use super::Dimension;
 use super::hash::{combine, mix64, unit_f32};
-use super::strategy::{Formula, Fraction, Strategy, halton, permute, screen, sobol, split};
+use super::strategy::{Formula, Fraction, Strategy, halton, in_stratum, permute};
+use super::strategy::{screen, sobol, split};
 use std::sync::Arc;
 
 /// Independent randomisations of every pixel; sample `s` belongs to replicate `s % REPLICATES`.
@@ -34,6 +38,8 @@ pub(super) enum Source {
     Halton,
     /// Sobol points of sets of 2^this, shared out among pixels.
     ScreenSobol(u32),
+    /// Hammersley points, shifted along x, where any shift keeps the strata, and scrambled along y.
+    Hammersley,
     /// Sets without a shift: random ones, and the grid.
     Sets(Formula),
     /// A set that is shifted.
@@ -64,7 +70,7 @@ impl Sampler {
             Strategy::Halton => Source::Halton,
             Strategy::ScreenSobol => Source::ScreenSobol(count.trailing_zeros()),
             Strategy::Pmj02 => Source::Pmj02(table()),
-            Strategy::Hammersley => Source::Shifted(table()),
+            Strategy::Hammersley => Source::Hammersley,
             _ => match Formula::new(strategy, count) {
                 Some(formula) => Source::Sets(formula),
                 None => Source::Shifted(table()),
@@ -174,6 +180,13 @@ impl Sampler {
             Source::Sets(formula) => {
                 formula.point(permute(path.index, self.size as u32, mix64(seed)), seed)
             }
+            Source::Hammersley => {
+                let n = self.size as u32;
+                let i = permute(path.index, n, mix64(seed));
+                let [shift, scramble] = split(seed);
+                let x = in_stratum(i, n, 0).wrapping_add(shift);
+                [x, sobol::scramble_reversed(i, scramble).reverse_bits()]
+            }
             Source::Shifted(points) => {
                 let point = points[permute(path.index, points.len() as u32, mix64(seed)) as usize];
                 let shift = split(seed);
@@ -207,7 +220,8 @@ impl SampleKey {
     /// What hit filters know a ray of this path by: a hash of the path, the vertex and the kind of ray.
     #[inline(always)]
     pub fn ray_id(&self, bounce: u32, kind: u32) -> u32 {
-        let path = self.key ^ u64::from(self.index);
+        // Mixed, not added: keys of neighbouring pixels may differ in few bits.
+        let path = combine(self.key, u64::from(self.index));
         (combine(path, u64::from(bounce) << 8 | u64::from(kind) | 1 << 63) >> 32) as u32
     }
 
@@ -299,7 +313,7 @@ mod tests {
         }
     }
 
-    /// Mean of a product of two dimensions, each a pair: 1/16 only if the dimensions are independent of each other. 4096
+    /// Mean of a product of two dimensions, each a pair: 1/16 only if the dimensions are independent of each other. 16 384
     /// pixels of 16 samples, 5.5 standard errors from their own spread: 15 comparisons, 6e-7 in all; a correlation
     /// of 2 % would be found.
     #[test]
@@ -307,11 +321,11 @@ mod tests {
         for strategy in samplers() {
             let sampler = Sampler::new(strategy, 0, 64);
             let (mut sum, mut squares) = (0.0, 0.0);
-            let pixels = 4096;
+            let pixels = 16_384;
             for pixel in 0..pixels {
                 let mut mean = 0.0;
                 for s in 0..16 {
-                    let path = sampler.path(pixel % 64, pixel / 64, 4 * s);
+                    let path = sampler.path(pixel % 128, pixel / 128, 4 * s);
                     let [a, b] = sampler.two(path, Dimension::Film).map(|v| f64::from(v) - 0.5);
                     let [c, d] = sampler.two(path, Dimension::Lens).map(|v| f64::from(v) - 0.5);
                     mean += (a * c + b * d) / 16.0;
@@ -322,7 +336,7 @@ mod tests {
             let n = f64::from(pixels);
             let error = (squares / n).sqrt() / n.sqrt();
             assert!((sum / n).abs() < 5.5 * error, "{}: {} {error}", strategy.name(), sum / n);
-            assert!(error < 0.02 / 12.0 / 5.5 * 6.0, "{}: no power, {error}", strategy.name());
+            assert!(error < 2.0 * 0.02 / 12.0 / 8.5, "{}: no power, {error}", strategy.name());
         }
     }
 
@@ -334,6 +348,7 @@ mod tests {
             for (strategy, fills) in [
                 (Strategy::Jittered, [true, false, false]),
                 (Strategy::NRooks, [false, true, true]),
+                (Strategy::Hammersley, [false, true, true]),
                 (Strategy::MultiJittered, [true, true, true]),
                 (Strategy::CorrelatedMultiJittered, [true, true, true]),
                 (Strategy::Pmj02, [true, true, true]),
@@ -360,7 +375,8 @@ mod tests {
         }
     }
 
-    /// Mean of a smooth integrand: the error of every strategy but the random one falls faster than random's.
+    /// Mean of a smooth integrand: with 256 points the error of every strategy is at most six tenths of random's, from 256
+    /// means (a ratio that is known to 6 %), and Sobol's falls with more than the power 1.2.
     #[test]
     fn strategies_beat_random_numbers() {
         let rms = |strategy, n: u64| {
@@ -381,5 +397,52 @@ mod tests {
         }
         let slope = (rms(Strategy::Sobol, 16) / rms(Strategy::Sobol, 1024)).log2() / 6.0;
         assert!(slope > 1.2, "slope {slope}");
+    }
+
+    /// Single numbers fill their strata, too: light selection, lobes and roulette are drawn so.
+    #[test]
+    fn single_numbers_fill_their_strata() {
+        for strategy in [
+            Strategy::Grid,
+            Strategy::Jittered,
+            Strategy::NRooks,
+            Strategy::MultiJittered,
+            Strategy::CorrelatedMultiJittered,
+            Strategy::Hammersley,
+            Strategy::Sobol,
+            Strategy::Pmj02,
+        ] {
+            // The replicates of a grid share one set.
+            let (count, step) = if strategy == Strategy::Grid { (16, 1) } else { (64, 4) };
+            let sampler = Sampler::new(strategy, 0, count);
+            for pixel in 0..50 {
+                let mut seen = [false; 16];
+                for s in 0..16 {
+                    let path = sampler.path(pixel, 1, step * s);
+                    let number = sampler.one(path, Dimension::LightSelect { bounce: 2 });
+                    seen[(16.0 * number) as usize] = true;
+                }
+                // A shift moves all strata alike, so that two may share a box and one be left.
+                let filled = seen.iter().filter(|s| **s).count();
+                let least = if strategy == Strategy::Hammersley { 15 } else { 16 };
+                assert!(filled >= least, "{} {pixel}: {seen:?}", strategy.name());
+            }
+        }
+    }
+
+    /// No two samples of any pixels have the same name for hit filters.
+    #[test]
+    fn rays_have_names_of_their_own() {
+        for strategy in samplers() {
+            let sampler = Sampler::new(strategy, 0, 64);
+            let mut ids = std::collections::BTreeSet::new();
+            for pixel in 0..64 {
+                for s in 0..64 {
+                    ids.insert(sampler.path(pixel % 8, pixel / 8, s).ray_id(0, 0));
+                }
+            }
+            // Of 4096 hashes of 32 bits, two are the same in one of 500 draws.
+            assert!(ids.len() >= 4094, "{}: {}", strategy.name(), ids.len());
+        }
     }
 }

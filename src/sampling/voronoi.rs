@@ -90,7 +90,8 @@ impl Cell {
 fn cells_with_margin(points: &[[f64; 2]], domain: Domain, margin: f64) -> (Vec<Cell>, bool) {
     // A point on an edge would be its own mirror image.
     let points: Vec<_> = match domain {
-        Domain::Torus => points.to_vec(),
+        // Coordinates too small to be triangulated are as good as 0.
+        Domain::Torus => points.iter().map(|p| p.map(|c| if c < EDGE { 0.0 } else { c })).collect(),
         Domain::Square => points.iter().map(|p| p.map(|c| c.clamp(EDGE, 1.0 - EDGE))).collect(),
     };
     let ghosts = points.iter().flat_map(|p| match domain {

@@ -2,8 +2,8 @@
 
 use crate::cli::progress::{BAR, style};
 use crate::error::{Error, Result, unknown_name};
-use crate::lab::exhibit::Exhibit;
-use crate::lab::measure::points_from_text;
+use crate::lab::exhibit::{Exhibit, measured};
+use crate::lab::measure::{Measures, measure, points_from_text};
 use crate::sampling::Strategy;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget};
@@ -85,24 +85,47 @@ impl Sets {
         Ok(list)
     }
 
-    /// Every set, measured.
+    /// Something of every set: of points with the name of their file, and of strategies.
     ///
     /// # Errors
     /// As [`Self::strategies`]; where a file cannot be read or is no set of points.
-    pub(super) fn exhibits(&self) -> Result<Vec<Exhibit>> {
+    pub(super) fn each<T>(
+        &self,
+        of_points: impl Fn(&str, Vec<[f64; 2]>) -> T,
+        of_strategy: impl Fn(Strategy) -> Result<T>,
+    ) -> Result<Vec<T>> {
         let strategies = self.strategies()?;
         let bar = self.bar(self.files.len() + strategies.len());
-        let mut exhibits = Vec::new();
+        let mut found = Vec::new();
         for file in &self.files {
-            exhibits.push(Exhibit::of_points(&file.display().to_string(), points(file)?));
+            found.push(of_points(&file.display().to_string(), points(file)?));
             bar.inc(1);
         }
         for strategy in strategies {
-            exhibits.push(Exhibit::of_strategy(strategy, self.count, self.seed)?);
+            found.push(of_strategy(strategy)?);
             bar.inc(1);
         }
         bar.finish_and_clear();
-        Ok(exhibits)
+        Ok(found)
+    }
+
+    /// Every set, with all about it.
+    ///
+    /// # Errors
+    /// As [`Self::each`].
+    pub(super) fn exhibits(&self) -> Result<Vec<Exhibit>> {
+        self.each(Exhibit::of_points, |s| Exhibit::of_strategy(s, self.count, self.seed))
+    }
+
+    /// The measures of every set.
+    ///
+    /// # Errors
+    /// As [`Self::each`].
+    pub(super) fn measures(&self) -> Result<Vec<Measures>> {
+        self.each(
+            |name, points| measure(name, &points),
+            |strategy| measured(strategy, self.count, self.seed),
+        )
     }
 
     /// A bar of so many steps; nothing where it is quiet or there is no terminal.

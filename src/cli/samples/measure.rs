@@ -2,7 +2,7 @@
 
 use super::exhibits::Sets;
 use crate::cli::{DONE, report};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::lab::exhibit::{Fit, Slopes, slopes};
 use crate::lab::listing;
 use crate::lab::measure::Measures;
@@ -48,10 +48,14 @@ const SEEDS: u64 = 16;
 /// Measures as told; the exit code.
 pub(super) fn run(args: &Measure) -> Result<u8> {
     let Measure { sets, .. } = args;
-    let measured: Vec<Measures> = sets.exhibits()?.into_iter().map(|e| e.measures).collect();
+    let strategies = sets.strategies()?;
+    if args.slopes && strategies.is_empty() {
+        let message = "--slopes: a file has one number of points; name strategies with --sampler";
+        return Err(Error::Usage(message.into()));
+    }
+    let measured = sets.measures()?;
     let mut fitted = Vec::new();
     if args.slopes {
-        let strategies = sets.strategies()?;
         let counts: Vec<u32> =
             (0..5).rev().map(|k| sets.count >> (2 * k)).filter(|n| *n > 0).collect();
         let bar = sets.bar(strategies.len());

@@ -6,10 +6,10 @@ use crate::cli::output::identity;
 use crate::cli::{DONE, report};
 use crate::error::{Error, Result};
 use crate::image::{check_writable, write_png, write_whole};
-use crate::lab::exhibit::Exhibit;
 use crate::lab::picture;
 use crate::study::report::{panel, samples_page};
 use clap::Args;
+use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -39,46 +39,43 @@ enum Format {
     Png,
 }
 
+/// A file to write, and of which set: none for a page of all.
+struct Target {
+    path: PathBuf,
+    format: Format,
+    set: Option<usize>,
+}
+
+/// The most points of a drawing: more would be some ten megabytes a set.
+const MOST_DRAWN: usize = 32_768;
+
 /// Draws as told; the exit code.
 pub(super) fn run(args: &Plot) -> Result<u8> {
-    let formats: Vec<Format> =
-        args.output.iter().map(|path| format(path)).collect::<Result<_>>()?;
-    let mut taken: Vec<PathBuf> = args.sets.files().iter().map(|file| identity(file)).collect();
-    for path in &args.output {
-        // A drawing over a file of points, or two in one place, would lose one of them.
-        let same = identity(path);
-        if taken.contains(&same) {
-            let name = path.display();
-            let message =
-                format!("-o {name}: it is read, or would be written twice; name another file");
-            return Err(Error::Usage(message));
-        }
-        taken.push(same);
-        check_writable(path)?;
-    }
+    let targets = targets(args)?;
     let exhibits = args.sets.exhibits()?;
-    let mut written = Vec::new();
-    for (path, format) in args.output.iter().zip(formats) {
-        if format == Format::Html {
-            let page = samples_page(&exhibits);
-            write_whole(path, |file| file.write_all(page.as_bytes()))?;
-            written.push(path.clone());
-            continue;
-        }
-        for exhibit in &exhibits {
-            let path = if exhibits.len() == 1 { path.clone() } else { named(path, exhibit) };
-            if format == Format::Svg {
+    if let Some(large) = exhibits.iter().find(|exhibit| exhibit.points.len() > MOST_DRAWN) {
+        let (name, count) = (&large.measures.name, large.points.len());
+        let message = format!("{name}: {count} points; at most {MOST_DRAWN} are drawn");
+        return Err(Error::Usage(message));
+    }
+    for Target { path, format, set } in &targets {
+        match (format, set.map(|set| &exhibits[set])) {
+            (Format::Svg, Some(exhibit)) => {
                 let drawing = panel(exhibit);
-                write_whole(&path, |file| file.write_all(drawing.as_bytes()))?;
-            } else {
-                let (pixels, [width, height]) = picture::of(exhibit);
-                write_png(&path, &pixels, width, height)?;
+                write_whole(path, |file| file.write_all(drawing.as_bytes()))?;
             }
-            written.push(path);
+            (Format::Png, Some(exhibit)) => {
+                let (pixels, [width, height]) = picture::of(exhibit);
+                write_png(path, &pixels, width, height)?;
+            }
+            _ => {
+                let page = samples_page(&exhibits);
+                write_whole(path, |file| file.write_all(page.as_bytes()))?;
+            }
         }
     }
     if !args.sets.quiet {
-        let names: Vec<_> = written.iter().map(|path| path.display().to_string()).collect();
+        let names: Vec<_> = targets.iter().map(|t| t.path.display().to_string()).collect();
         let _ = writeln!(io::stderr(), "wrote {}", names.join(", "));
     }
     if args.sets.json {
@@ -86,6 +83,46 @@ pub(super) fn run(args: &Plot) -> Result<u8> {
         report::json(&Report::new(measures.collect(), Vec::new()))?;
     }
     Ok(DONE)
+}
+
+/// Every file that will be written.
+///
+/// # Errors
+/// A usage error for an unknown ending, and for a file that is read, too, or would be written twice; where one cannot
+/// be written.
+fn targets(args: &Plot) -> Result<Vec<Target>> {
+    let strategies = args.sets.strategies()?;
+    let of_files = args.sets.files().iter().map(|file| {
+        let name = file.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    });
+    let names: Vec<String> =
+        of_files.chain(strategies.iter().map(|strategy| strategy.name().to_owned())).collect();
+    let mut targets = Vec::new();
+    for path in &args.output {
+        let format = format(path)?;
+        if format == Format::Html {
+            targets.push(Target { path: path.clone(), format, set: None });
+            continue;
+        }
+        for (set, name) in names.iter().enumerate() {
+            let path = if names.len() == 1 { path.clone() } else { named(path, name) };
+            targets.push(Target { path, format, set: Some(set) });
+        }
+    }
+    let mut taken: Vec<PathBuf> = args.sets.files().iter().map(|file| identity(file)).collect();
+    for Target { path, .. } in &targets {
+        let same = identity(path);
+        if taken.contains(&same) {
+            let name = path.display();
+            let message =
+                format!("{name}: it is read, or would be written twice; name another file");
+            return Err(Error::Usage(message));
+        }
+        taken.push(same);
+        check_writable(path)?;
+    }
+    Ok(targets)
 }
 
 /// # Errors
@@ -104,11 +141,8 @@ fn format(path: &Path) -> Result<Format> {
 }
 
 /// `set.svg` of a set named `sobol`: `set-sobol.svg`.
-fn named(path: &Path, exhibit: &Exhibit) -> PathBuf {
-    let part =
-        |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+fn named(path: &Path, set: &str) -> PathBuf {
+    let part = |part: Option<&OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
     let (stem, ending) = (part(path.file_stem()), part(path.extension()));
-    // Names of files are paths: no part of them may lead elsewhere.
-    let name = exhibit.measures.name.replace(['/', '\\'], "_");
-    path.with_file_name(format!("{stem}-{name}.{ending}"))
+    path.with_file_name(format!("{stem}-{set}.{ending}"))
 }

@@ -28,7 +28,7 @@ pub(super) struct Zoneplate {
     /// Picture to write, .png
     #[arg(short, long, value_name = "FILE.png", required_unless_present = "table")]
     output: Option<PathBuf>,
-    /// Strategy of sampling: those of `glint render --sampler`, and grid, which is not shifted and so is biased
+    /// Strategy of sampling, as of glint render; the grid is not shifted, and so is biased
     #[arg(long, value_name = "NAME", default_value = "sobol", value_parser = sampler)]
     sampler: Strategy,
     /// Samples per pixel; of a table, several: 1,4,16
@@ -45,10 +45,10 @@ pub(super) struct Zoneplate {
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// The truth instead of samples: the integral of rings times filter
-    #[arg(long, conflicts_with = "table")]
+    #[arg(long, conflicts_with_all = ["table", "sampler", "spp", "json"])]
     exact: bool,
     /// RMS error and seconds of every strategy with every filter
-    #[arg(long, conflicts_with = "output")]
+    #[arg(long, conflicts_with_all = ["output", "sampler", "filter"])]
     table: bool,
     /// Print the errors as JSON to standard output
     #[arg(long)]

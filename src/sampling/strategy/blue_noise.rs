@@ -34,8 +34,13 @@ pub(super) fn points(count: u32, seed: u64) -> PointSet {
         }
     }
     // Take the points away, always the one of the tightest cluster: the last one is the first in rank.
+    // The fewer are left, the farther they must see.
     let mut cells: Vec<usize> = (0..count)
-        .map(|_| {
+        .map(|taken_away| {
+            let left = count - taken_away;
+            if left < count && left.is_power_of_two() {
+                field.look_around(left);
+            }
             let cluster = field.tightest_cluster();
             field.set(cluster, false);
             cluster
@@ -70,13 +75,25 @@ impl Field {
 
     fn new(count: u32) -> Self {
         let side = (f64::from(count) * Self::CELLS_A_POINT).sqrt().ceil() as u32;
-        let spacing = f64::from(side) / f64::from(count).sqrt();
+        let taken = vec![false; side as usize * side as usize];
+        let mut field = Self { side, crowding: Vec::new(), taken, profile: Vec::new() };
+        field.look_around(count);
+        field
+    }
+
+    /// Makes the Gaussian as wide as `count` points need it.
+    fn look_around(&mut self, count: u32) {
+        let spacing = f64::from(self.side) / f64::from(count).sqrt();
         let deviation = Self::WIDTH * spacing;
-        let reach = ((4.5 * deviation).ceil() as u32).min(side / 2);
+        let reach = ((4.5 * deviation).ceil() as u32).min(self.side / 2);
         let gaussian = |d: u32| double::exp(-0.5 * (f64::from(d) / deviation).powi(2));
-        let cells = side as usize * side as usize;
-        let profile = (0..=reach).map(gaussian).collect();
-        Self { side, taken: vec![false; cells], crowding: vec![0.0; cells], profile }
+        self.profile = (0..=reach).map(gaussian).collect();
+        self.crowding = vec![0.0; self.taken.len()];
+        for cell in 0..self.taken.len() {
+            if self.taken[cell] {
+                self.set(cell, true);
+            }
+        }
     }
 
     /// Puts a point into a cell or takes it away.

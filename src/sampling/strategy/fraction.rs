@@ -21,7 +21,7 @@ pub(super) fn from_f64(x: f64) -> Fraction {
 /// The point at `offset` of the way through interval `i` of [0, 1) cut into `n` equal ones, `i < n`: with exact bounds,
 /// `i = floor(n x)`.
 #[inline(always)]
-pub(super) fn in_stratum(i: u32, n: u32, offset: Fraction) -> Fraction {
+pub(in crate::sampling) fn in_stratum(i: u32, n: u32, offset: Fraction) -> Fraction {
     within([i, i + 1], n, offset)
 }
 

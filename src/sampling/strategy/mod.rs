@@ -21,6 +21,7 @@ pub(super) mod sobol;
 mod strata;
 
 pub(super) use formula::{Formula, split};
+pub(super) use fraction::in_stratum;
 pub use fraction::{Fraction, to_f64};
 pub(super) use permutation::permute;
 
@@ -146,8 +147,8 @@ impl Strategy {
     /// Whether there are sets of `count` points.
     pub fn allows(self, count: u32) -> bool {
         let needs_cells = matches!(self, Self::MultiJittered | Self::CorrelatedMultiJittered);
-        let is_possible = !needs_cells || multi_jittered::Cells::of(count).is_some();
-        (1..=self.max_count()).contains(&count) && is_possible
+        (1..=self.max_count()).contains(&count)
+            && (!needs_cells || multi_jittered::Cells::of(count).is_some())
     }
 
     /// How it spreads points, in a few words.
@@ -177,12 +178,6 @@ impl Strategy {
     /// Whether its sets depend on the seed.
     pub const fn is_random(self) -> bool {
         !matches!(self, Self::Grid | Self::Halton | Self::Hammersley)
-    }
-
-    /// Whether every prefix is spread over the square, so that a render can go on for ever. The others need to know how
-    /// many points there will be, and begin anew after so many.
-    pub const fn is_progressive(self) -> bool {
-        matches!(self, Self::Random | Self::Halton | Self::Sobol)
     }
 
     /// Whether it can sample the pixels and paths of a render: all but what is no set of the torus.

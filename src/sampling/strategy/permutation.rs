@@ -55,7 +55,7 @@ mod tests {
     }
 
     /// Where two numbers go together: uniform over all ordered pairs. 13 comparisons, each failing by chance at
-    /// 1e-7; 400 seeds a pair find probabilities that are off by 5 % in the mean square.
+    /// 5e-8; 400 seeds a pair find probabilities that are off by 5 % in the mean square for n of 13 and more, by 20 % for 3.
     #[test]
     fn pairs_go_everywhere_alike() {
         for n in [2, 3, 4, 5, 6, 7, 8, 9, 11, 13, 15, 16, 17] {
@@ -76,7 +76,7 @@ mod tests {
                 continue;
             }
             let p = 1.0 - ChiSquared::new(f64::from(pairs - 1)).unwrap().cdf(chi_squared);
-            assert!(p > 1e-7, "n = {n}: chi squared {chi_squared}, p = {p}");
+            assert!(p > 5e-8, "n = {n}: chi squared {chi_squared}, p = {p}");
         }
     }
 }

@@ -11,7 +11,7 @@ use super::sobol::{pascal_reversed, scramble_reversed};
 use crate::sampling::hash::{combine, mix32};
 
 /// Bits of pixel numbers: images are at most 65536 pixels wide and high.
-pub(in crate::sampling) const PIXEL_BITS: u32 = 32;
+const PIXEL_BITS: u32 = 32;
 
 /// The place of a pixel on the Z curve.
 #[inline]

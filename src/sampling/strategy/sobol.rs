@@ -8,7 +8,7 @@
 /// Hash in which bit i of the result depends only on bits 0..=i of `x`: a nested uniform (Owen)
 /// scramble of the bit-reversed value.
 #[inline(always)]
-pub(super) const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
+pub(in crate::sampling) const fn scramble_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);

@@ -115,8 +115,7 @@ fn nets_are_nets() {
 /// What comes first does not depend on how much there will be.
 #[test]
 fn progressive_sets_are_prefixes_of_larger_ones() {
-    let progressive = sets().filter(|s| s.is_progressive()).chain([Strategy::Pmj02]);
-    for strategy in progressive {
+    for strategy in [Strategy::Random, Strategy::Halton, Strategy::Sobol, Strategy::Pmj02] {
         for seed in 0..4 {
             let whole = points(strategy, 256, seed);
             for count in [1, 7, 64, 255] {
@@ -177,4 +176,19 @@ fn counts_that_cannot_be_are_refused_with_advice() {
     assert!(advice.ends_with("60 or 63, not 61"), "{advice}");
     assert!(Strategy::sampler("bounded-voronoi").is_err());
     assert!(Strategy::sampler("sobel").unwrap_err().to_string().contains("did you mean `sobol`"));
+}
+
+/// Ranks of blue noise: every prefix of a power of two keeps about the distance that so many points of their own would keep.
+#[test]
+fn prefixes_of_blue_noise_are_even() {
+    for seed in 0..4 {
+        let set = points(Strategy::BlueNoise, 256, seed);
+        for count in [4, 8, 16, 32, 64, 128] {
+            let pairs = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
+            let squared = pairs.map(|(i, j)| fraction::distance_squared(set[i], set[j])).min();
+            let hexagonal = (2.0 / (3.0_f64.sqrt() * count as f64)).sqrt();
+            let distance = (squared.unwrap_or(0) as f64).sqrt() / 4_294_967_296.0 / hexagonal;
+            assert!(distance > 0.4, "seed {seed}, first {count}: {distance}");
+        }
+    }
 }
