@@ -226,6 +226,10 @@ pub(super) struct Bench {
           requires = "frame", help_heading = "Frame")]
     pub(super) spp: u64,
 
+    /// Sampler of the frame, as of glint render
+    #[arg(long, value_name = "NAME", value_parser = sampler, requires = "frame", help_heading = "Frame")]
+    pub(super) sampler: Option<Strategy>,
+
     /// Rays of each kind; k, M and G multiply it
     #[arg(long, value_name = "N", default_value = "131072", value_parser = count, help_heading = "Race")]
     pub(super) rays: u64,

@@ -26,6 +26,7 @@ impl FrameScene {
             scene: path.to_owned(),
             size: Some(args.size),
             spp: Some(args.spp),
+            sampler: args.sampler,
             up: args.up,
             quiet: args.quiet,
             ..Render::default()

@@ -14,11 +14,13 @@ pub(super) fn points(count: u32, seed: u64) -> PointSet {
     let mut rng = CounterRng::new(seed);
     let mut field = Field::new(count);
     // Begin with random cells.
-    while field.taken.iter().filter(|t| **t).count() < count as usize {
+    let mut placed = 0;
+    while placed < count {
         let [high, _] = random_point(&mut rng);
         let cell = ((u64::from(high) * field.taken.len() as u64) >> 32) as usize;
         if !field.taken[cell] {
             field.set(cell, true);
+            placed += 1;
         }
     }
     // Move the point of the tightest cluster to the largest void, until it would go back to where it was.
@@ -64,6 +66,15 @@ struct Field {
     crowding: Vec<f64>,
     /// The Gaussian by distance along an axis; the one in the plane is a product of two.
     profile: Vec<f64>,
+    /// Of each row: the tightest cluster and the largest void; `None` where they are to be looked for again.
+    rows: Vec<Option<Extremes>>,
+}
+
+/// A row's most crowded cell with a point, and its least crowded one without.
+#[derive(Clone, Copy, Debug, Default)]
+struct Extremes {
+    cluster: Option<usize>,
+    void: Option<usize>,
 }
 
 impl Field {
@@ -76,7 +87,8 @@ impl Field {
     fn new(count: u32) -> Self {
         let side = (f64::from(count) * Self::CELLS_A_POINT).sqrt().ceil() as u32;
         let taken = vec![false; side as usize * side as usize];
-        let mut field = Self { side, crowding: Vec::new(), taken, profile: Vec::new() };
+        let rows = vec![None; side as usize];
+        let mut field = Self { side, crowding: Vec::new(), taken, profile: Vec::new(), rows };
         field.look_around(count);
         field
     }
@@ -89,6 +101,7 @@ impl Field {
         let gaussian = |d: u32| double::exp(-0.5 * (f64::from(d) / deviation).powi(2));
         self.profile = (0..=reach).map(gaussian).collect();
         self.crowding = vec![0.0; self.taken.len()];
+        self.rows.fill(None);
         for cell in 0..self.taken.len() {
             if self.taken[cell] {
                 self.set(cell, true);
@@ -109,6 +122,7 @@ impl Field {
         };
         let sign = if taken { 1.0 } else { -1.0 };
         for (y, dy) in around(row) {
+            self.rows[y] = None;
             for (x, dx) in around(column) {
                 self.crowding[y * side + x] += sign * self.profile[dy] * self.profile[dx];
             }
@@ -116,22 +130,46 @@ impl Field {
     }
 
     /// The most crowded of the cells that hold a point; the first of several.
-    fn tightest_cluster(&self) -> usize {
-        self.best(true, |a, b| a > b)
+    fn tightest_cluster(&mut self) -> usize {
+        let clusters = self.extremes().filter_map(|row| row.cluster).collect::<Vec<_>>();
+        self.first_best(clusters, |a, b| a > b).unwrap_or(0)
     }
 
     /// The least crowded of the cells that hold none; the first of several.
-    fn largest_void(&self) -> usize {
-        self.best(false, |a, b| a < b)
+    fn largest_void(&mut self) -> usize {
+        let voids = self.extremes().filter_map(|row| row.void).collect::<Vec<_>>();
+        self.first_best(voids, |a, b| a < b).unwrap_or(0)
     }
 
-    fn best(&self, taken: bool, better: impl Fn(f64, f64) -> bool) -> usize {
-        let mut best: Option<usize> = None;
-        for (i, crowding) in self.crowding.iter().enumerate() {
-            if self.taken[i] == taken && best.is_none_or(|b| better(*crowding, self.crowding[b])) {
-                best = Some(i);
+    /// Those of all rows; only rows that a change has reached are looked through.
+    fn extremes(&mut self) -> impl Iterator<Item = Extremes> {
+        let side = self.side as usize;
+        for row in 0..side {
+            if self.rows[row].is_none() {
+                let cells = row * side..(row + 1) * side;
+                let taken = |wanted: bool| {
+                    let field = &*self;
+                    cells.clone().filter(move |cell| field.taken[*cell] == wanted)
+                };
+                let cluster = self.first_best(taken(true), |a, b| a > b);
+                let void = self.first_best(taken(false), |a, b| a < b);
+                self.rows[row] = Some(Extremes { cluster, void });
             }
         }
-        best.unwrap_or(0)
+        self.rows.iter().flatten().copied()
+    }
+
+    fn first_best(
+        &self,
+        cells: impl IntoIterator<Item = usize>,
+        better: impl Fn(f64, f64) -> bool,
+    ) -> Option<usize> {
+        let mut best: Option<usize> = None;
+        for cell in cells {
+            if best.is_none_or(|b| better(self.crowding[cell], self.crowding[b])) {
+                best = Some(cell);
+            }
+        }
+        best
     }
 }

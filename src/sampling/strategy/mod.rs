@@ -136,7 +136,7 @@ impl Strategy {
     /// The most points of a set: as many as take the slow strategies some ten seconds.
     pub const fn max_count(self) -> u32 {
         match self {
-            Self::BlueNoise => 4096,
+            Self::BlueNoise => 16_384,
             Self::CentroidalVoronoi | Self::BoundedVoronoi => 8192,
             Self::DartThrowing => 32_768,
             Self::Pmj02 => 65_536,
