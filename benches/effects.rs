@@ -5,6 +5,8 @@
 //! of its replicates, and time to equal error is time times noise. `cargo bench --bench effects -- [SCENE.toml ...]`
 //! (default: every scene of the repository, and a diffuse ball in a white environment); prints a Markdown table.
 
+mod scenes;
+
 #[cfg(feature = "bvh")]
 use glint::accel::bvh::Bvh as Backend;
 #[cfg(not(feature = "bvh"))]
@@ -129,19 +131,6 @@ fn measure(name: &str, mut scene: Scene) -> Result<()> {
     Ok(())
 }
 
-/// Every scene file of the repository.
-fn scenes() -> Vec<PathBuf> {
-    let files = |path: PathBuf| std::fs::read_dir(path).into_iter().flatten().flatten();
-    let folders = files(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"));
-    let mut scenes: Vec<PathBuf> = folders
-        .flat_map(|folder| files(folder.path()))
-        .map(|file| file.path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .collect();
-    scenes.sort();
-    scenes
-}
-
 fn read(path: &Path, is_white: bool) -> Result<Scene> {
     let albedo = ColorInput::constant(Rgb::splat(0.7));
     let white = Environment::Constant { radiance: Rgb::WHITE };
@@ -168,7 +157,7 @@ fn main() -> Result<()> {
     // `cargo bench` itself adds --bench.
     let said: Vec<PathBuf> =
         std::env::args().skip(1).filter(|a| !a.starts_with("--")).map(PathBuf::from).collect();
-    for path in if said.is_empty() { scenes() } else { said } {
+    for path in if said.is_empty() { scenes::all() } else { said } {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         measure(&name, read(&path, false)?)?;
         // Diffuse under a constant environment, where nothing but scattering is needed.

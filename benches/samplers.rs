@@ -5,6 +5,8 @@
 //! third: relative RMS error against a picture of 2048 Sobol samples of the next seed, mean over seeds 0 to 3. Times are
 //! medians of turns that the samplers take one after the other.
 
+mod scenes;
+
 #[cfg(feature = "bvh")]
 use glint::accel::bvh::Bvh as Backend;
 #[cfg(not(feature = "bvh"))]
@@ -183,19 +185,6 @@ fn errors(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Every scene file of the repository.
-fn scenes() -> Vec<PathBuf> {
-    let files = |path: PathBuf| std::fs::read_dir(path).into_iter().flatten().flatten();
-    let folders = files(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes"));
-    let mut scenes: Vec<PathBuf> = folders
-        .flat_map(|folder| files(folder.path()))
-        .map(|file| file.path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .collect();
-    scenes.sort();
-    scenes
-}
-
 #[allow(clippy::print_stdout, reason = "a benchmark reports on the terminal")]
 fn row(first: &str, cells: impl Iterator<Item = String>) {
     println!("| {first} | {} |", cells.collect::<Vec<_>>().join(" | "));
@@ -211,6 +200,7 @@ fn main() -> Result<()> {
     }
     row("scene", samplers().map(|strategy| strategy.name().into()));
     row("---", samplers().map(|_| "---".into()));
-    let paths = if said == ["all"] { scenes() } else { said.iter().map(PathBuf::from).collect() };
+    let paths =
+        if said == ["all"] { scenes::all() } else { said.iter().map(PathBuf::from).collect() };
     paths.iter().try_for_each(|path| errors(path))
 }
