@@ -21,24 +21,25 @@ pub const COLUMNS: [Column; 12] = [
     ("anisotropy", |m| m.anisotropy.map_or("-".into(), |a| format!("{a:.1} dB"))),
 ];
 
-/// As a table for a terminal.
-pub fn table<'m>(measures: impl Iterator<Item = &'m Measures> + Clone) -> String {
-    let name = measures.clone().map(|m| m.name.chars().count()).max().unwrap_or(0).max(4);
-    let mut text = format!("{:name$} {:>7}", "set", "n");
-    for (heading, _) in COLUMNS {
-        text += &format!("  {:>width$}", heading, width = width(heading));
-    }
-    for row in measures {
-        text += &format!("\n{:name$} {:>7}", row.name, row.count);
-        for (heading, value) in COLUMNS {
-            text += &format!("  {:>width$}", value(row), width = width(heading));
-        }
-    }
-    text
-}
-
-fn width(heading: &str) -> usize {
-    heading.len().max(7)
+/// As a table for a terminal, a line each.
+pub fn table<'m>(measures: impl Iterator<Item = &'m Measures>) -> String {
+    let headings = ["set", "n"].into_iter().chain(COLUMNS.map(|(heading, _)| heading));
+    let mut rows: Vec<Vec<String>> = vec![headings.map(str::to_owned).collect()];
+    rows.extend(measures.map(|m| {
+        let cells = COLUMNS.iter().map(|(_, value)| value(m));
+        [m.name.clone(), m.count.to_string()].into_iter().chain(cells).collect()
+    }));
+    let widest = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..rows[0].len()).map(widest).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).enumerate();
+        let aligned = cells.map(|(k, (cell, &width))| match k {
+            0 => format!("{cell:width$}"),
+            _ => format!("  {cell:>width$}"),
+        });
+        aligned.collect::<String>()
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 fn number(value: f64) -> String {
@@ -50,6 +51,5 @@ fn optional(value: Option<f64>) -> String {
 }
 
 fn bracket(Bracket { low, high }: Bracket) -> String {
-    // Where there is a gap it is at most a few in the last digit.
-    if low == high { number(low) } else { format!("{:.4}~", 0.5 * (low + high)) }
+    if low == high { number(low) } else { format!("{low:.4}-{high:.4}") }
 }

@@ -2,8 +2,9 @@
 //!
 //! Sets and values are in `tests/fixtures/points`, with the script that made them.
 
-use glint::lab::measure::{self, Bracket, Domain, measure};
+use glint::lab::measure::{self, Bracket, measure};
 use glint::sampling::hash::{combine, mix64};
+use glint::sampling::voronoi::Domain;
 use serde_json::Value;
 use std::path::Path;
 
@@ -145,8 +146,8 @@ fn shifts_on_the_torus() {
     assert!(same(a.wraparound, b.wraparound));
     assert!(same(a.anisotropy.unwrap(), b.anisotropy.unwrap()));
     let mean = |set: &[[f64; 2]], domain| measure::neighbours(set, domain).unwrap().mean;
-    assert!(same(mean(&points, Domain::Toroidal), mean(&moved, Domain::Toroidal)));
-    assert!(!same(mean(&points, Domain::Bounded), mean(&moved, Domain::Bounded)));
+    assert!(same(mean(&points, Domain::Torus), mean(&moved, Domain::Torus)));
+    assert!(!same(mean(&points, Domain::Square), mean(&moved, Domain::Square)));
     assert!(!same(a.star_discrepancy.low, b.star_discrepancy.low));
     assert!(!same(a.centered, b.centered));
 }

@@ -6,6 +6,7 @@ use crate::support::effort;
 use crate::support::scene_files::{FileScene, Small};
 use crate::support::scenes::{cornell, cornell_shot, mean, zoo, zoo_shot};
 use crate::support::shot::Shot;
+use crate::support::z_test::limit;
 use glint::accel::embree::EmbreeAccelerator;
 use glint::sampling::Strategy;
 use glint::world::World;
@@ -21,10 +22,10 @@ fn unbiased() -> impl Iterator<Item = Strategy> {
 }
 
 /// Mean luminance of pictures under many seeds against that of ten times as many of random numbers. 14 samplers, three
-/// scenes; an error of 8 % of the light is found, 3 % in the thorough tier.
+/// scenes; an error of 6 % of the light is found, 2 % in the thorough tier.
 #[test]
 fn every_sampler_but_the_grid_is_unbiased() {
-    let power = effort(8, 3) as f64 / 100.0;
+    let power = effort(6, 2) as f64 / 100.0;
     let seeds = effort(100, 900) as u64;
     let depth_of_field =
         FileScene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/effects/lens.toml"));
@@ -54,8 +55,8 @@ fn every_sampler_but_the_grid_is_unbiased() {
             moments((0..references).map(|seed| picture(Strategy::Random, seeds + seed)));
         for strategy in unbiased() {
             let own = moments((0..seeds).map(|seed| picture(strategy, seed)));
-            // Student's t of 99 degrees of freedom is passed with 3e-11 by each of 42.
-            let limit = 7.5 * (own.1 + reference.1).sqrt();
+            // Nearly all of the variance, and so of its uncertainty, is that of the fewer pictures.
+            let limit = limit(seeds as f64) * (own.1 + reference.1).sqrt();
             let difference = (own.0 - reference.0).abs();
             let what = format!("{name}, {}: {own:?} {reference:?}", strategy.name());
             assert!(difference < limit, "{what}");
@@ -129,5 +130,5 @@ fn blue_noise_on_the_screen_is_blue() {
     };
     let (plain, screen) = (errors(Strategy::Sobol), errors(Strategy::ScreenSobol));
     assert!((0.8..1.2).contains(&(screen.0 / plain.0)), "pixel by pixel {}", screen.0 / plain.0);
-    assert!(screen.1 / plain.1 < 0.88, "blurred {}", screen.1 / plain.1);
+    assert!(screen.1 / plain.1 < 0.85, "blurred {}", screen.1 / plain.1);
 }

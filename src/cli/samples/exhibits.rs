@@ -91,14 +91,14 @@ impl Sets {
     /// As [`Self::strategies`]; where a file cannot be read or is no set of points.
     pub(super) fn each<T>(
         &self,
-        of_points: impl Fn(&str, Vec<[f64; 2]>) -> T,
+        of_points: impl Fn(&str, Vec<[f64; 2]>) -> Result<T>,
         of_strategy: impl Fn(Strategy) -> Result<T>,
     ) -> Result<Vec<T>> {
         let strategies = self.strategies()?;
         let bar = self.bar(self.files.len() + strategies.len());
         let mut found = Vec::new();
         for file in &self.files {
-            found.push(of_points(&file.display().to_string(), points(file)?));
+            found.push(of_points(&file.display().to_string(), points(file)?)?);
             bar.inc(1);
         }
         for strategy in strategies {
@@ -109,12 +109,25 @@ impl Sets {
         Ok(found)
     }
 
-    /// Every set, with all about it.
+    /// Every set, with all about it, of at most so many points.
     ///
     /// # Errors
-    /// As [`Self::each`].
-    pub(super) fn exhibits(&self) -> Result<Vec<Exhibit>> {
-        self.each(Exhibit::of_points, |s| Exhibit::of_strategy(s, self.count, self.seed))
+    /// As [`Self::each`]; a usage error for a set of more points, before it is measured.
+    pub(super) fn exhibits(&self, most: usize) -> Result<Vec<Exhibit>> {
+        let check = |name: &str, count: usize| match count > most {
+            true => Err(Error::Usage(format!("{name}: {count} points; at most {most} are drawn"))),
+            false => Ok(()),
+        };
+        self.each(
+            |name, points| {
+                check(name, points.len())?;
+                Ok(Exhibit::of_points(name, points))
+            },
+            |strategy| {
+                check(strategy.name(), self.count as usize)?;
+                Exhibit::of_strategy(strategy, self.count, self.seed)
+            },
+        )
     }
 
     /// The measures of every set.
@@ -123,7 +136,7 @@ impl Sets {
     /// As [`Self::each`].
     pub(super) fn measures(&self) -> Result<Vec<Measures>> {
         self.each(
-            |name, points| measure(name, &points),
+            |name, points| Ok(measure(name, &points)),
             |strategy| measured(strategy, self.count, self.seed),
         )
     }

@@ -52,12 +52,7 @@ const MOST_DRAWN: usize = 32_768;
 /// Draws as told; the exit code.
 pub(super) fn run(args: &Plot) -> Result<u8> {
     let targets = targets(args)?;
-    let exhibits = args.sets.exhibits()?;
-    if let Some(large) = exhibits.iter().find(|exhibit| exhibit.points.len() > MOST_DRAWN) {
-        let (name, count) = (&large.measures.name, large.points.len());
-        let message = format!("{name}: {count} points; at most {MOST_DRAWN} are drawn");
-        return Err(Error::Usage(message));
-    }
+    let exhibits = args.sets.exhibits(MOST_DRAWN)?;
     for Target { path, format, set } in &targets {
         match (format, set.map(|set| &exhibits[set])) {
             (Format::Svg, Some(exhibit)) => {

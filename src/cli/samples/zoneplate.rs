@@ -113,10 +113,14 @@ fn picture(args: &Zoneplate) -> Result<Run> {
     let shown: Vec<[u8; 1]> = pixels.iter().map(|v| [srgb::encode8(*v as f32)]).collect();
     write_png(path, &shown, args.size, args.size)?;
     if !args.quiet {
-        let is_biased =
-            if args.sampler == Strategy::Grid && !args.exact { " (biased)" } else { "" };
-        let line = format!("wrote {}: RMS error {:.5}{is_biased}", path.display(), run.rmse);
-        let _ = writeln!(io::stderr(), "{line}");
+        let error = match args.exact {
+            true => String::new(),
+            false if args.sampler == Strategy::Grid => {
+                format!(": RMS error {:.5} (biased)", run.rmse)
+            }
+            false => format!(": RMS error {:.5}", run.rmse),
+        };
+        let _ = writeln!(io::stderr(), "wrote {}{error}", path.display());
     }
     Ok(run)
 }

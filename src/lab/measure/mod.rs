@@ -20,13 +20,14 @@ mod text;
 pub use extreme::{EXACT_UP_TO, extreme_discrepancy};
 pub use integration::{Convergence, Integrand, RmsError, convergence, error};
 pub use l2::{centered, l2_star, mixture, wraparound};
-pub use neighbour::{Domain, Neighbours, neighbours};
+pub use neighbour::{Neighbours, neighbours};
 pub use net::t_value;
 pub use projection::{Projection, projections};
 pub use spectrum::{Periodogram, Ring};
 pub use star::{Bracket, star_discrepancy};
 pub use text::points_from_text;
 
+use crate::sampling::voronoi::Domain;
 use serde::Serialize;
 
 /// Everything that is measured of one set. Distances and `t_value` are `None` where they do not exist.
@@ -85,8 +86,8 @@ pub fn spectrum_limit(n: usize) -> usize {
 
 /// Measures the points, values in [0, 1). O(n^2): seconds for 65 536 points.
 pub fn measure(name: &str, points: &[[f64; 2]]) -> Measures {
-    let bounded = neighbours(points, Domain::Bounded);
-    let toroidal = neighbours(points, Domain::Toroidal);
+    let bounded = neighbours(points, Domain::Square);
+    let toroidal = neighbours(points, Domain::Torus);
     let [projection_x, projection_y] = projections(points);
     let anisotropy_limit = spectrum_limit(points.len());
     Measures {

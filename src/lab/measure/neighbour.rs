@@ -6,17 +6,8 @@
 //! for clusters, where the tree still takes O(n log n). Knows nothing of who made the points.
 
 use super::sum::mean;
+use crate::sampling::voronoi::Domain;
 use rayon::prelude::*;
-
-/// How distances are measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Domain {
-    /// In the plane: points at opposite sides of the square are far apart.
-    Bounded,
-    /// On the torus: the square repeats itself in all directions, as a tile. A point is not its own
-    /// neighbour.
-    Toroidal,
-}
 
 /// Distances of the points of a set to their nearest neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +23,8 @@ pub struct Neighbours {
     pub relative_mean: f64,
 }
 
-/// The distances in a set of at least two points, values in [0, 1); `None` for fewer. O(n log n), parallel.
+/// The distances in a set of at least two points, values in [0, 1); `None` for fewer. On the torus the square repeats
+/// itself in all directions, as a tile, but a point is not its own neighbour. O(n log n), parallel.
 pub fn neighbours(points: &[[f64; 2]], domain: Domain) -> Option<Neighbours> {
     if points.len() < 2 {
         return None;
@@ -141,10 +133,10 @@ fn squared(p: &[f64; 2], low: &[f64; 2], high: &[f64; 2], domain: Domain) -> f64
         let (below, above) = (low[axis] - p[axis], p[axis] - high[axis]);
         let direct = below.max(above).max(0.0);
         match domain {
-            Domain::Bounded => direct,
+            Domain::Square => direct,
             // Around the torus: down to the upper end of the box, or up to its lower end.
-            Domain::Toroidal if direct > 0.0 => direct.min(1.0 + above.min(below)),
-            Domain::Toroidal => 0.0,
+            Domain::Torus if direct > 0.0 => direct.min(1.0 + above.min(below)),
+            Domain::Torus => 0.0,
         }
     });
     x * x + y * y
@@ -159,7 +151,7 @@ mod tests {
         let distance = |p: &[f64; 2], q: &[f64; 2]| {
             let [x, y] = [0, 1].map(|axis| {
                 let direct = (p[axis] - q[axis]).abs();
-                if domain == Domain::Bounded { direct } else { direct.min(1.0 - direct) }
+                if domain == Domain::Square { direct } else { direct.min(1.0 - direct) }
             });
             (x * x + y * y).sqrt()
         };
@@ -189,7 +181,7 @@ mod tests {
         for seed in 0..60 {
             let n = 2 + 7 * seed as usize;
             for points in [random_set(n, seed), random_tied_set(n, seed), clusters(n, seed)] {
-                for domain in [Domain::Bounded, Domain::Toroidal] {
+                for domain in [Domain::Square, Domain::Torus] {
                     let found = neighbours(&points, domain).unwrap();
                     let (minimum, mean) = brute_force(&points, domain);
                     assert!((found.minimum - minimum).abs() <= 1e-15, "{seed} {domain:?}");
@@ -206,24 +198,24 @@ mod tests {
         let hexagonal: Vec<_> = (0..13 * 14)
             .map(|i| [(f64::from(i % 13) + 0.5 * (row(i) % 2.0)) / 13.0, row(i) / 14.0])
             .collect();
-        let found = neighbours(&hexagonal, Domain::Toroidal).unwrap();
+        let found = neighbours(&hexagonal, Domain::Torus).unwrap();
         let step = (0.25_f64 / 169.0 + 1.0 / 196.0).sqrt().min(1.0 / 13.0);
         assert!((found.minimum - step).abs() < 1e-14 && found.relative_minimum > 0.95, "{found:?}");
         assert!(found.relative_minimum <= 1.0);
 
         let at = |i: u32| (f64::from(i) + 0.5) / 8.0;
         let grid: Vec<_> = (0..64).map(|i| [at(i / 8), at(i % 8)]).collect();
-        for domain in [Domain::Bounded, Domain::Toroidal] {
+        for domain in [Domain::Square, Domain::Torus] {
             let found = neighbours(&grid, domain).unwrap();
             assert_eq!((found.minimum, found.mean), (0.125, 0.125));
             assert!((found.relative_minimum - (3.0_f64.sqrt() / 2.0).sqrt()).abs() < 1e-15);
         }
         let corners = [[0.0, 0.0], [0.9375, 0.9375]];
-        let torus = neighbours(&corners, Domain::Toroidal).unwrap().minimum;
+        let torus = neighbours(&corners, Domain::Torus).unwrap().minimum;
         assert_eq!(torus, 2.0_f64.sqrt() / 16.0);
-        assert_eq!(neighbours(&corners, Domain::Bounded).unwrap().minimum, 2.0_f64.sqrt() * 0.9375);
-        assert_eq!(neighbours(&corners[..1], Domain::Toroidal), None);
-        assert_eq!(neighbours(&[], Domain::Bounded), None);
+        assert_eq!(neighbours(&corners, Domain::Square).unwrap().minimum, 2.0_f64.sqrt() * 0.9375);
+        assert_eq!(neighbours(&corners[..1], Domain::Torus), None);
+        assert_eq!(neighbours(&[], Domain::Square), None);
     }
 
     /// Only the torus has no edges.
@@ -233,16 +225,16 @@ mod tests {
         let moved = shifted(&points, [0.43, 0.78]);
         let mean = |set: &[[f64; 2]], domain| neighbours(set, domain).unwrap().mean;
         let difference = |domain| (mean(&points, domain) - mean(&moved, domain)).abs();
-        assert!(difference(Domain::Toroidal) < 1e-14);
-        assert!(difference(Domain::Bounded) > 1e-6);
+        assert!(difference(Domain::Torus) < 1e-14);
+        assert!(difference(Domain::Square) > 1e-6);
     }
 
     /// Clusters and coincident points take no more than n log n: quadratic time would be minutes here.
     #[test]
     fn large_clusters() {
-        let found = neighbours(&clusters(200_000, 0), Domain::Toroidal).unwrap();
+        let found = neighbours(&clusters(200_000, 0), Domain::Torus).unwrap();
         assert!(found.minimum > 0.0 && found.mean < 1e-8, "{found:?}");
-        let found = neighbours(&vec![[0.5, 0.5]; 200_000], Domain::Bounded).unwrap();
+        let found = neighbours(&vec![[0.5, 0.5]; 200_000], Domain::Square).unwrap();
         assert_eq!((found.minimum, found.mean), (0.0, 0.0));
     }
 }

@@ -2,14 +2,14 @@
 //!
 //! False alarms: a correct mean of nearly normal samples leaves six standard errors with probability 2e-9. Of few
 //! pairs the error itself is uncertain, so the limit is that quantile of Student's t (W. Gosset 1908). The binary makes
-//! fewer than 200 such comparisons, so all of them together stay below 1e-6.
+//! fewer than 250 such comparisons, so all of them together stay below 1e-6.
 
 #![cfg(feature = "embree")]
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// How many standard errors a mean of `n` independent samples may be off.
-fn limit(n: f64) -> f64 {
+pub(crate) fn limit(n: f64) -> f64 {
     let degrees = (n - 1.0).max(1.0);
     -StudentsT::new(0.0, 1.0, degrees).expect("a distribution").inverse_cdf(1e-9)
 }
