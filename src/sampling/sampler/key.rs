@@ -3,7 +3,7 @@
 use crate::sampling::Dimension;
 use crate::sampling::hash::combine;
 
-/// Which sample of which pixel; with a [`Sampler`], all numbers of a path.
+/// Which sample of which pixel; with a [`Sampler`](super::Sampler), all numbers of a path.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SampleKey {
     pub(in crate::sampling) key: u64,
