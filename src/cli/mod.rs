@@ -8,6 +8,7 @@ mod backend;
 mod bench;
 mod generate;
 mod ledger_table;
+mod options;
 mod output;
 mod plan;
 mod plan_table;

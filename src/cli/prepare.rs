@@ -9,6 +9,7 @@ use crate::camera::Camera;
 use crate::error::Result;
 use crate::film::Region;
 use crate::load;
+use crate::math::DVec3;
 use crate::plan::Plan;
 use crate::scene::{self, Effects};
 use crate::world::World;
@@ -27,6 +28,8 @@ pub(super) struct Prepared {
     pub(super) plan: Plan,
     pub(super) camera: Camera,
     pub(super) description: scene::Camera,
+    /// Of the scene, not of the camera.
+    pub(super) up: DVec3,
     pub(super) fingerprint: String,
     /// Still turning: the accelerator is next.
     pub(super) busy: ProgressBar,
@@ -80,6 +83,7 @@ impl Prepared {
             plan,
             camera,
             description,
+            up,
             fingerprint,
             busy,
             load_seconds,

@@ -8,7 +8,7 @@ use super::prepare::Prepared;
 use super::render::Job;
 use super::select::Settings;
 use super::statistics::{Statistics, command};
-use super::{ledger_table, plan_table};
+use super::{ledger_table, options, plan_table};
 use crate::error::{Error, Result, Warning};
 use crate::film::Region;
 use crate::geometry::PrimitiveId;
@@ -226,7 +226,7 @@ pub(super) fn metadata(
     rendered: &Rendered,
     bill: &Bill,
 ) -> Vec<(&'static str, Attribute)> {
-    let Prepared { settings, world, plan, fingerprint, .. } = job.prepared;
+    let Prepared { settings, world, plan, description, up, fingerprint, .. } = job.prepared;
     let text = |value: String| Attribute::Text(value);
     let share = |row: &ClassRow| {
         let noise = |share| format!(", {:.2} % variance", 100.0 * share);
@@ -261,7 +261,7 @@ pub(super) fn metadata(
         ("glint.simulated", text(listed(&simulated))),
         ("glint.lacks", text(listed(&lacks))),
         ("glint.shares", text(shares.join("; "))),
-        ("glint.settings", text(format!("{settings:?}"))),
+        ("glint.settings", text(options::of(settings, description, *up))),
         ("glint.origin", text(format!("{},{},{}", origin.x, origin.y, origin.z))),
         ("glint.backend", text(format!("{} {}", job.name.0, job.name.1))),
     ]

@@ -3,6 +3,7 @@
 #![cfg(feature = "embree")]
 
 use crate::support::program::{Bench, TRIANGLE, channels};
+use glint::image::Attribute;
 use std::fs;
 use std::process::Command;
 
@@ -240,6 +241,24 @@ fn layers_statistics_and_header_say_what_was_done() {
     let stats = fs::read_to_string(bench.path("s.json")).expect("statistics");
     let stats: serde_json::Value = serde_json::from_str(&stats).expect("JSON");
     assert_eq!(stats["paths"], 16 * 12 * 4);
+}
+
+/// The header's settings are options that make the same picture again, with the camera that was found.
+#[test]
+fn a_header_says_how_to_make_the_picture_again() {
+    let bench = Bench::new();
+    bench.file("model.obj", TRIANGLE);
+    let first = ["model.obj", "-o", "a.exr", "--seed", "3", "--up", "z", "--crop", "3,2,16,11"];
+    let (code, said) = bench.render(&first);
+    assert_eq!(code, 0, "{said}");
+    let settings = channels(&bench.path("a.exr")).metadata["glint.settings"].clone();
+    let Attribute::Text(settings) = settings else { panic!("{settings:?}") };
+    let again = ["render", "model.obj", "-o", "b.exr"].into_iter().chain(settings.split(' '));
+    let output = bench.glint(&again.collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let [a, b] = ["a.exr", "b.exr"].map(|name| channels(&bench.path(name)));
+    assert_eq!(a.channels, b.channels, "{settings}");
+    assert_eq!(a.metadata["glint.settings"], b.metadata["glint.settings"]);
 }
 
 #[test]

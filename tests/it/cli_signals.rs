@@ -71,10 +71,10 @@ fn while_rendering_it_writes_what_there_is_and_exits_with_3() {
     let bench = Bench::new();
     bench.file("model.obj", TRIANGLE);
     let mut program = Program::start(&bench);
-    // It says its choices when it begins to build; wait for the render itself.
+    // What it says last before it renders; from then on there is something to write.
     let said = BufReader::new(program.0.stderr.take().expect("a pipe"));
     let mut lines = said.lines().map(|line| line.expect("text"));
-    assert!(lines.any(|line| line.starts_with("camera ")));
+    assert!(lines.any(|line| line.starts_with("rays are traced by ")));
     std::thread::sleep(Duration::from_secs(2));
     program.interrupt();
     assert!(lines.any(|line| line.starts_with("interrupted: ")));
