@@ -78,12 +78,10 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A text file does not say what it should.
-    #[error("{location}: {message}\n{}", excerpt(*line_number, text))]
+    #[error("{location}: {message}{}", excerpt(location.line, text))]
     Parse {
         /// Where.
         location: Location,
-        /// The line again, for the excerpt (0: none).
-        line_number: usize,
         /// The offending line of text.
         text: String,
         /// What is wrong and what would be right.
@@ -128,7 +126,6 @@ impl Error {
     ) -> Self {
         Self::Parse {
             location: Location::new(path, line),
-            line_number: line,
             text: text.into(),
             message: message.into(),
         }
@@ -140,14 +137,17 @@ impl Error {
     }
 }
 
-/// The offending line under its number, cut to a readable length.
+/// The offending line under its number, cut to a readable length; nothing where there is none.
 fn excerpt(line: usize, text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
     let mut shown: String = text.trim_end().chars().take(120).collect();
     if shown.len() < text.trim_end().len() {
         shown.push('…');
     }
     match line {
-        0 => format!("  | {shown}"),
-        line => format!("  {line} | {shown}"),
+        0 => format!("\n  | {shown}"),
+        line => format!("\n  {line} | {shown}"),
     }
 }

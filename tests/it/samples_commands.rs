@@ -125,7 +125,7 @@ fn mistakes_are_refused_and_leave_nothing_behind() {
         ("measure empty.txt", 1, "empty.txt"),
         ("zoneplate -o a.jpg", 2, "the ending must be .png"),
         ("zoneplate --spp 1,4 -o a.png", 2, "one number of samples"),
-        ("zoneplate --sampler bounded-voronoi -o a.png", 2, "unknown sampler"),
+        ("zoneplate --sampler bounded-voronoi -o a.png", 2, "take centroidal-voronoi"),
         ("zoneplate --size 100000 -o a.png", 2, "8192"),
     ] {
         let (found, _, err) = samples(&bench, words);

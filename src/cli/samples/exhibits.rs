@@ -15,14 +15,14 @@ const MOST_POINTS: i64 = 1 << 17;
 /// Options that name sets.
 #[derive(Debug, Args)]
 pub(super) struct Sets {
-    /// Files of points: two numbers in [0, 1) a line; # begins a comment
+    /// Files of points: two numbers in [0, 1) a line, with a space or a comma between them; # begins a comment
     files: Vec<PathBuf>,
     /// Strategies: all, or a list of grid, random, jittered, n-rooks, multi-jittered, correlated-multi-jittered, dart-throwing,
     /// poisson-disk, centroidal-voronoi, bounded-voronoi, blue-noise, halton, hammersley, sobol and pmj02
     /// [default: all, unless there are files]
     #[arg(long, value_name = "NAME,...", value_parser = strategies)]
     sampler: Option<Strategies>,
-    /// Points of a set, at most 131072: measuring takes a time that grows with their square
+    /// Points of a set, at most 131072 (drawn: 32768): measuring takes a time that grows with their square
     #[arg(short = 'n', long, value_name = "N", default_value_t = 256,
           value_parser = clap::value_parser!(u32).range(1..=MOST_POINTS))]
     pub(super) count: u32,

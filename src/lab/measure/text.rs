@@ -5,7 +5,7 @@
 
 use crate::error::{Error, Result};
 
-/// The points of `text`, one `x y` a line, separated by spaces or tabs, both in [0, 1). `name` is what errors
+/// The points of `text`, one `x y` a line, separated by spaces, tabs or a comma, both in [0, 1). `name` is what errors
 /// call the text: the path of its file.
 ///
 /// # Errors
@@ -19,19 +19,16 @@ pub fn points_from_text(text: &str, name: &str) -> Result<Vec<[f64; 2]>> {
             continue;
         }
         let wrong = |message: String| Error::parse(name, index + 1, line, message);
-        let mut words = content.split_whitespace();
-        match (words.next(), words.next(), words.next()) {
-            (Some(x), Some(y), None) => {
-                points.push([coordinate(x).map_err(wrong)?, coordinate(y).map_err(wrong)?]);
-            }
-            _ => {
-                let count = content.split_whitespace().count();
-                let numbers = if count == 1 { "1 word" } else { &format!("{count} words") };
-                return Err(wrong(format!(
-                    "{numbers} where a point `x y` is due: write two numbers with a space between them"
-                )));
-            }
-        }
+        let is_between = |c: char| c.is_whitespace() || c == ',';
+        let words: Vec<&str> = content.split(is_between).filter(|word| !word.is_empty()).collect();
+        let &[x, y] = &words[..] else {
+            let numbers =
+                if words.len() == 1 { "1 word" } else { &format!("{} words", words.len()) };
+            return Err(wrong(format!(
+                "{numbers} where a point `x y` is due: write two numbers with a space between them"
+            )));
+        };
+        points.push([coordinate(x).map_err(wrong)?, coordinate(y).map_err(wrong)?]);
     }
     if points.is_empty() {
         let message = "no points: write two numbers in [0, 1) a line, with a space between them";
@@ -42,9 +39,9 @@ pub fn points_from_text(text: &str, name: &str) -> Result<Vec<[f64; 2]>> {
 
 /// A number in [0, 1), or what is wrong with the word.
 fn coordinate(word: &str) -> std::result::Result<f64, String> {
-    let value: f64 = word.parse().map_err(|_| {
-        format!("`{word}` is not a number: write it like 0.25, with a point and no comma")
-    })?;
+    let value: f64 = word
+        .parse()
+        .map_err(|_| format!("`{word}` is not a number: write it like 0.25, with a point"))?;
     if value.is_nan() {
         return Err(format!(
             "`{word}` is no place: leave the point out or give it a number in [0, 1)"
@@ -63,8 +60,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn comments_blanks_tabs_and_line_ends_of_every_kind() {
-        let text = "\u{feff}# two points\r\n\r\n 0.25\t5e-1 # first\r\n\n-0 0.999999\n#end";
+    fn comments_blanks_tabs_commas_and_line_ends_of_every_kind() {
+        let text = "\u{feff}# two points\r\n\r\n 0.25\t5e-1 # first\r\n\n-0, 0.999999\n#end";
         let points = points_from_text(text, "points.txt").unwrap();
         assert_eq!(points, [[0.25, 0.5], [0.0, 0.999_999]]);
         assert!(points[1][0].is_sign_positive());
@@ -75,8 +72,8 @@ mod tests {
         for (text, line, says) in [
             ("0 0\n0.5", 2, "1 word where"),
             ("0 0\n\n0.5 0.5 0.5", 3, "3 words where"),
-            ("0.5,0.5", 1, "1 word where"),
-            ("0.5, 0.5", 1, "`0.5,` is not a number"),
+            ("0,5 0,5", 1, "4 words where"),
+            ("0.5;0.5,0", 1, "`0.5;0.5` is not a number"),
             ("0 0\n# a\n0.5 x", 3, "`x` is not a number"),
             ("0 1", 1, "`1` is outside of [0, 1)"),
             ("-0.1 0", 1, "`-0.1` is outside of [0, 1)"),

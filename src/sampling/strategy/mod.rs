@@ -188,8 +188,12 @@ impl Strategy {
     /// The sampler of this name.
     ///
     /// # Errors
-    /// A usage error that lists the names.
+    /// A usage error that lists the names, or says why there are only sets.
     pub fn sampler(name: &str) -> Result<Self> {
+        if name == Self::BoundedVoronoi.name() {
+            let message = "bounded-voronoi has no points beyond its edges, so that its sets cannot be shifted from pixel to pixel: take centroidal-voronoi";
+            return Err(Error::Usage(message.into()));
+        }
         let samplers = || Self::ALL.iter().filter(|strategy| strategy.can_render());
         let found = samplers().find(|strategy| strategy.name() == name).copied();
         let known = samplers().map(|strategy| strategy.name());
