@@ -21,6 +21,7 @@ use glint::plan::{Plan, Wishes};
 use glint::render::{RenderJob, render};
 use glint::sampling::{Dimension, SampleKeys, Sampler, Strategy};
 use glint::scene::Effects;
+use glint::study::compare::relative_rmse;
 use glint::trace::{Tracer, Wavefront};
 use glint::world::World;
 use std::hint::black_box;
@@ -158,13 +159,7 @@ fn errors(path: &Path) -> Result<()> {
         picture.iter().flat_map(|p| p.to_array()).map(f64::from).collect()
     };
     let truth = values(&truth);
-    let mean = truth.iter().sum::<f64>() / truth.len() as f64;
-    // The relative RMS error of the DESIGN: a tenth of the mean keeps dark pixels from counting most.
-    let error = |picture: &[Rgb]| {
-        let terms = values(picture).into_iter().zip(&truth);
-        let squared = terms.map(|(i, r)| (i - r).powi(2) / (r * r + 0.01 * mean * mean));
-        squared.sum::<f64>() / truth.len() as f64
-    };
+    let error = |picture: &[Rgb]| relative_rmse(&values(picture), &truth).powi(2);
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     for samples in SAMPLES {
         let mut found = Vec::new();

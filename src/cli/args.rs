@@ -1,5 +1,6 @@
 //! What can be said on the command line, each option in the type that it means. Parsing opens no file.
 
+use super::compare::{Compare, EXAMPLES};
 use super::samples::Samples;
 use super::values::{
     Env, count, crop, direction, duration, env, field_of_view, filter, finite, named,
@@ -39,6 +40,9 @@ pub(super) enum Command {
     /// Races Embree against the in-house BVH on your own scenes, and proves that they agree.
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
+    /// Says how far a picture is from another, in numbers and for the eye.
+    #[command(after_help = EXAMPLES)]
+    Compare(Compare),
     /// Writes a procedural OBJ model of any size, to test and to time with.
     #[command(after_help = GENERATE_EXAMPLES)]
     Generate(Generate),

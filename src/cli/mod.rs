@@ -6,6 +6,7 @@
 mod args;
 mod backend;
 mod bench;
+mod compare;
 mod generate;
 mod ledger_table;
 mod options;
@@ -44,6 +45,7 @@ pub fn main() -> ExitCode {
         args::Command::Render(args) => render::run(&args),
         args::Command::Plan(args) => plan::run(&args),
         args::Command::Bench(args) => bench::run(&args),
+        args::Command::Compare(args) => compare::run(&args),
         args::Command::Generate(args) => generate::run(&args),
         args::Command::Samples(args) => samples::run(&args),
     };

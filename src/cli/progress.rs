@@ -18,7 +18,7 @@ const SHORT: Duration = Duration::from_secs(1);
 
 /// A spinner.
 pub(super) fn busy(args: &Render, what: &'static str) -> ProgressBar {
-    let spinner = shown(args, None, SPINNER);
+    let spinner = shown(args.quiet, None, SPINNER);
     spinner.set_message(what);
     spinner.enable_steady_tick(Duration::from_millis(200));
     spinner
@@ -26,7 +26,12 @@ pub(super) fn busy(args: &Render, what: &'static str) -> ProgressBar {
 
 /// A bar of so many paths.
 pub(super) fn bar(args: &Render, paths: u64) -> ProgressBar {
-    shown(args, Some(paths), BAR)
+    shown(args.quiet, Some(paths), BAR)
+}
+
+/// A bar of so many steps.
+pub(super) fn steps(count: usize, is_quiet: bool) -> ProgressBar {
+    shown(is_quiet, Some(count as u64), BAR)
 }
 
 /// Makes `spinner` a bar while `done` of `total` bytes are read, if that takes its time.
@@ -44,8 +49,8 @@ pub(super) fn reading(spinner: &ProgressBar, done: u64, total: u64) {
     }
 }
 
-fn shown(args: &Render, length: Option<u64>, template: &str) -> ProgressBar {
-    if args.quiet {
+fn shown(is_quiet: bool, length: Option<u64>, template: &str) -> ProgressBar {
+    if is_quiet {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::with_draw_target(length, ProgressDrawTarget::stderr_with_hz(5));

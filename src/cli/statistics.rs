@@ -216,6 +216,7 @@ fn host() -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::compare;
     use super::super::samples::{measure, stipple, zoneplate};
     use super::*;
     use schemars::generate::SchemaSettings;
@@ -243,6 +244,7 @@ mod tests {
         schema_is_that_of::<Statistics>("render");
         schema_is_that_of::<plan::PlanReport>("plan");
         schema_is_that_of::<bench::Report>("bench");
+        schema_is_that_of::<compare::Report>("compare");
         schema_is_that_of::<measure::Report>("samples-measure");
         schema_is_that_of::<zoneplate::Report>("samples-zoneplate");
         schema_is_that_of::<stipple::Summary<'_>>("samples-stipple");

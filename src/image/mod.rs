@@ -14,7 +14,7 @@ mod write;
 pub use self::exr::{Attribute, ExrImage, Samples, read_exr_channels, write_exr};
 pub use atomic::{check_writable, write_whole};
 pub use open::open_regular;
-pub use read::{ColorSpace, MAX_BYTES, MAX_SIDE, read};
+pub use read::{ColorSpace, MAX_BYTES, MAX_SIDE, is_radiance, read};
 pub use tonemap::{ToneMap, auto_exposure, develop};
 pub use write::{write_hdr, write_png};
 

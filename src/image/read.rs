@@ -57,6 +57,17 @@ pub fn read(path: &Path, color_space: ColorSpace) -> Result<Image> {
         .ok_or_else(|| Error::image(path, "the image has no pixels; export it again"))
 }
 
+/// Whether the file holds radiance, as EXR and HDR files do, and not colours for a screen.
+///
+/// # Errors
+/// When the file cannot be read.
+pub fn is_radiance(path: &Path) -> Result<bool> {
+    let mut file = BufReader::new(open_regular(path)?);
+    let head = file.fill_buf().map_err(|e| Error::io(path, "read", e))?;
+    let is_hdr = || image::guess_format(head).is_ok_and(|format| format == ImageFormat::Hdr);
+    Ok(head.starts_with(&exr::MAGIC) || is_hdr())
+}
+
 /// What a file that is too large is told.
 pub(super) fn too_large(path: &Path) -> Error {
     let gigabytes = MAX_BYTES >> 30;

@@ -3,6 +3,8 @@
 //! Source: IEC 61966-2-1:1999, equations 3.5 to 3.8. Both directions are tables computed at compile time
 //! in `f64`, so that no `pow` runs per texel. Linear means display-linear: 1 is the white of the display.
 
+use crate::math::fun::double::pow;
+
 /// Linear value of each 8-bit code, rounded once from `f64`.
 pub static LINEAR: [f32; 256] = codes(0.0);
 
@@ -41,6 +43,14 @@ const fn decode_f64(encoded: f64) -> f64 {
 #[inline]
 pub fn decode(encoded: f32) -> f32 {
     decode_f64(f64::from(encoded)) as f32
+}
+
+/// Encoded value, in [0, 1], of a linear one in [0, 1]: equations 3.7 and 3.8, exact to rounding.
+pub fn encode(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        return 12.92 * linear;
+    }
+    1.055 * pow(linear, 1.0 / 2.4) - 0.055
 }
 
 /// The 8-bit code nearest to a linear value, in the encoded scale; clamps, and takes NaN for 0.

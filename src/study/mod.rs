@@ -3,4 +3,5 @@
 //! Nothing here prints; the command line does, from what these functions return.
 
 pub mod bench;
+pub mod compare;
 pub mod report;

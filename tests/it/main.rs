@@ -18,6 +18,8 @@ mod cli_options;
 mod cli_plan;
 mod cli_signals;
 mod closed_forms;
+mod compare;
+mod compare_command;
 mod cut_outs;
 mod determinism;
 mod effects;

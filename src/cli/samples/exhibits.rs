@@ -1,12 +1,12 @@
 //! Which sets `glint samples` is about: strategies by name, and files of points.
 
-use crate::cli::progress::{BAR, style};
+use crate::cli::progress;
 use crate::error::{Error, Result, unknown_name};
 use crate::lab::exhibit::{Exhibit, measured};
 use crate::lab::measure::{Measures, measure, points_from_text};
 use crate::sampling::Strategy;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget};
+use indicatif::ProgressBar;
 use std::path::{Path, PathBuf};
 
 /// The most points that are measured: half a minute of pairwise sums.
@@ -143,19 +143,8 @@ impl Sets {
 
     /// A bar of so many steps; nothing where it is quiet or there is no terminal.
     pub(super) fn bar(&self, steps: usize) -> ProgressBar {
-        bar(steps, self.quiet)
+        progress::steps(steps, self.quiet)
     }
-}
-
-/// A bar of so many steps.
-pub(super) fn bar(steps: usize, quiet: bool) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let target = ProgressDrawTarget::stderr_with_hz(5);
-    let bar = ProgressBar::with_draw_target(Some(steps as u64), target);
-    bar.set_style(style(BAR));
-    bar
 }
 
 fn points(file: &Path) -> Result<Vec<[f64; 2]>> {

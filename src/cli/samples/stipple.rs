@@ -1,7 +1,7 @@
 //! `glint samples stipple`: a picture in, the same drawn with dots out, as SVG, PNG or both.
 
 use crate::cli::output::identity;
-use crate::cli::progress::{BAR, style};
+use crate::cli::progress;
 use crate::cli::render::stop_flag;
 use crate::cli::values::{count, threads};
 use crate::cli::{DONE, INTERRUPTED, report};
@@ -9,7 +9,6 @@ use crate::error::{Error, Result};
 use crate::image::{ColorSpace, Image, Pixels, check_writable, read, srgb, write_png, write_whole};
 use crate::lab::stipple::{Density, Drawing, MAX_POINTS, Settings, Stippling, Tone, stipple};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
@@ -131,7 +130,7 @@ pub(super) fn run(args: &Stipple) -> Result<u8> {
     // The dots.
     let settings =
         Settings { points, seed: args.seed, iterations: args.iterations, tolerance: TOLERANCE };
-    let bar = bar(args);
+    let bar = progress::steps(args.iterations as usize, args.quiet);
     stop.store(false, Ordering::Relaxed);
     let stippling = stipple(&density, &settings, &mut |iteration, _| {
         bar.set_position(iteration.into());
@@ -229,16 +228,6 @@ fn nothing_to_draw(args: &Stipple) -> Error {
         "the picture is white all over: nothing is dark enough to draw; try --invert"
     };
     Error::image(&args.image, message)
-}
-
-fn bar(args: &Stipple) -> ProgressBar {
-    if args.quiet {
-        return ProgressBar::hidden();
-    }
-    let target = ProgressDrawTarget::stderr_with_hz(5);
-    let bar = ProgressBar::with_draw_target(Some(args.iterations.into()), target);
-    bar.set_style(style(BAR));
-    bar
 }
 
 /// The closing line, and the summary.

@@ -1,9 +1,8 @@
 //! `glint samples zoneplate`: the rings that show aliasing, sampled by any strategy and reconstructed with any filter; or a
 //! table of how far all of them are from the truth.
 
-use super::exhibits::bar;
 use crate::cli::values::{filter, sampler};
-use crate::cli::{DONE, report};
+use crate::cli::{DONE, progress, report};
 use crate::error::{Error, Result};
 use crate::filter::{Filter, FilterKind, FilterSampler};
 use crate::image::{check_writable, srgb, write_png};
@@ -157,7 +156,8 @@ impl Run {
 fn table(args: &Zoneplate) -> Result<Vec<Run>> {
     let plate = ZonePlate { size: args.size };
     let strategies = || Strategy::ALL.iter().copied().filter(|strategy| strategy.can_render());
-    let bar = bar(FilterKind::ALL.len() * strategies().count() * args.spp.len(), args.quiet);
+    let steps = FilterKind::ALL.len() * strategies().count() * args.spp.len();
+    let bar = progress::steps(steps, args.quiet);
     let mut runs = Vec::new();
     for (_, kind, radius) in FilterKind::ALL {
         let filter = Filter { kind, radius };
