@@ -7,7 +7,7 @@ use super::args::Render;
 use super::prepare::Prepared;
 use super::render::Job;
 use super::select::Settings;
-use super::statistics::{Statistics, command};
+use super::statistics::{Statistics, command, error_in_words, image_error};
 use super::{ledger_table, options, plan_table};
 use crate::error::{Error, Result, Warning};
 use crate::film::Region;
@@ -260,6 +260,7 @@ pub(super) fn metadata(
         ("glint.effects", text(settings.effects.to_string())),
         ("glint.simulated", text(listed(&simulated))),
         ("glint.lacks", text(listed(&lacks))),
+        ("glint.error", text(error_in_words(image_error(settings, rendered).as_ref()))),
         ("glint.shares", text(shares.join("; "))),
         ("glint.settings", text(options::of(settings, description, *up))),
         ("glint.origin", text(format!("{},{},{}", origin.x, origin.y, origin.z))),

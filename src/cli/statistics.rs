@@ -4,11 +4,13 @@
 
 use super::plan;
 use super::render::Job;
+use super::select::Settings;
 use crate::accel::BuildStats;
-use crate::film::Film;
+use crate::film::{ErrorEstimate, Film};
 use crate::os::peak_rss_bytes;
 use crate::plan::Row;
 use crate::render::{Bill, Forecast, Rendered};
+use crate::sampling::Strategy;
 use serde::Serialize;
 
 /// Wall-clock seconds of each phase.
@@ -49,6 +51,8 @@ pub(super) struct Statistics {
     plan: Vec<PlanRow>,
     /// The bill, by stage and by class.
     pub(super) ledger: Bill,
+    /// The error to be expected of the image, from the spread of its replicates; none of a black or biased image.
+    pub(super) error: Option<ErrorEstimate>,
     /// Samples that were not finite and are not in the image.
     non_finite: u64,
     /// Hash of the settings and of the contents of every file read.
@@ -160,13 +164,14 @@ impl Statistics {
             rays_per_second: ledger.rays() as f64 / rendered.seconds.max(1e-9),
             plan: plan::rows(&job.prepared.plan, None),
             ledger: bill,
+            error: image_error(&job.prepared.settings, rendered),
             non_finite: rendered.non_finite.count,
             fingerprint: job.prepared.fingerprint.clone(),
         }
     }
 
     /// The most important of it, in lines for people.
-    pub(super) fn summary(&self) -> [String; 2] {
+    pub(super) fn summary(&self) -> [String; 3] {
         let megabytes = |bytes: u64| bytes as f64 / 1e6;
         let (s, memory) = (&self.seconds, &self.memory_bytes);
         [
@@ -189,6 +194,7 @@ impl Statistics {
                 megabytes(memory.textures as u64),
                 megabytes(memory.film as u64),
             ),
+            format!("error: {}", error_in_words(self.error.as_ref())),
         ]
     }
 }
@@ -203,6 +209,28 @@ impl PlanRow {
             predicted_share: forecast.and_then(|forecast| forecast.share(row)),
         }
     }
+}
+
+/// The error of a render; none where the replicates are not independent.
+pub(super) fn image_error(settings: &Settings, rendered: &Rendered) -> Option<ErrorEstimate> {
+    let is_random = settings.sampler != Strategy::Grid;
+    is_random.then(|| rendered.film.error()).flatten()
+}
+
+/// The same for people.
+pub(super) fn error_in_words(error: Option<&ErrorEstimate>) -> String {
+    let Some(ErrorEstimate { relative_rmse, low, high, confidence, certain }) = error else {
+        return "not known".into();
+    };
+    let percent = |error: f64| format!("{:.2} %", 100.0 * error);
+    format!(
+        "{} relative RMSE ({:.0} % confidence: {} to {}){}",
+        percent(*relative_rmse),
+        100.0 * confidence,
+        percent(*low),
+        percent(*high),
+        if *certain { "" } else { "; not certain: few bright samples decide" }
+    )
 }
 
 /// The command line as it was typed.

@@ -5,10 +5,12 @@
 //! sum a replicate: error and variance come from their spread. Knows nothing of paths or scenes.
 
 mod classes;
+mod error;
 mod fixed;
 mod pixels;
 
 pub use classes::{ClassFilm, ClassSample, ClassShare};
+pub use error::ErrorEstimate;
 pub use pixels::{Pixels, Region};
 
 use crate::math::Rgb;

@@ -235,7 +235,7 @@ fn layers_statistics_and_header_say_what_was_done() {
     }
     assert!(exr.channel("depth.Z").expect("depth").contains(&f32::INFINITY));
     assert_eq!(exr.channel("samples.N").expect("samples")[0], 4.0);
-    for key in ["glint.version", "glint.seed", "glint.fingerprint", "glint.origin"] {
+    for key in ["glint.version", "glint.seed", "glint.fingerprint", "glint.origin", "glint.error"] {
         assert!(exr.metadata.contains_key(key), "{key}");
     }
     let stats = fs::read_to_string(bench.path("s.json")).expect("statistics");

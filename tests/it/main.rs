@@ -26,6 +26,7 @@ mod effects;
 mod effects_chain;
 mod effects_lists;
 mod effects_plan;
+mod error_estimate;
 mod filter;
 mod generate;
 mod image;

@@ -19,6 +19,9 @@ use serde::Serialize;
 /// Pixels a degree of what FLIP assumes: a screen of 3840 pixels on 0.7 m, seen from 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
 
+/// A comparison takes some 250 bytes a pixel.
+const MOST_PIXELS: u64 = 1 << 25;
+
 /// The differences of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -53,7 +56,7 @@ pub struct Comparison {
 /// Compares a picture with what it should be. `progress` is told steps done, and steps in all.
 ///
 /// # Errors
-/// A usage error for pictures of different sizes, and for radiance against encoded values.
+/// A usage error for pictures of different sizes or of more than 33 million pixels, and for radiance against encoded values.
 pub fn compare(
     picture: &Picture,
     reference: &Picture,
@@ -66,27 +69,38 @@ pub fn compare(
         );
         return Err(Error::Usage(message));
     }
+    if u64::from(w) * u64::from(h) > MOST_PIXELS {
+        let message =
+            format!("{w}x{h}: pictures of at most {MOST_PIXELS} pixels are compared: crop them");
+        return Err(Error::Usage(message));
+    }
     if picture.values() != reference.values() {
         let message = "one picture is radiance (EXR, HDR), the other is encoded for a screen: compare two of a kind";
         return Err(Error::Usage(message.into()));
     }
-    let (a, b) = (picture.numbers(), reference.numbers());
-    // The same exposure for both: a picture that is too bright shall be seen to be.
-    let exposure = reference.exposure();
-    let shown = [picture.encoded(exposure), reference.encoded(exposure)];
+    let of_numbers = {
+        let (a, b) = (picture.numbers(), reference.numbers());
+        Metrics {
+            rmse: difference::rmse(&a, &b),
+            relative_rmse: Some(relative_rmse(&a, &b)).filter(|error| error.is_finite()),
+            mae: difference::mae(&a, &b),
+            mean_a: difference::mean(&a),
+            mean_b: difference::mean(&b),
+            psnr: None,
+            ssim: None,
+            flip: 0.0,
+        }
+    };
+    let (psnr, ssim) = {
+        // The same exposure for both: a picture that is too bright shall be seen to be.
+        let exposure = reference.exposure();
+        let (a, b) = (picture.encoded(exposure), reference.encoded(exposure));
+        (difference::psnr(&a, &b), ssim::ssim(&a, &b, [w, h]))
+    };
     let map = match reference.values() {
         Values::Encoded => flip::ldr(picture.linear(), reference.linear(), [w, h]),
         Values::Radiance => flip::hdr(picture.linear(), reference.linear(), [w, h], progress),
     };
-    let metrics = Metrics {
-        rmse: difference::rmse(&a, &b),
-        relative_rmse: Some(relative_rmse(&a, &b)).filter(|error| error.is_finite()),
-        mae: difference::mae(&a, &b),
-        psnr: difference::psnr(&shown[0], &shown[1]),
-        ssim: ssim::ssim(&shown[0], &shown[1], [w, h]),
-        flip: map.mean(),
-        mean_a: difference::mean(&a),
-        mean_b: difference::mean(&b),
-    };
+    let metrics = Metrics { psnr, ssim, flip: map.mean(), ..of_numbers };
     Ok(Comparison { metrics, map })
 }
