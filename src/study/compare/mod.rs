@@ -78,25 +78,28 @@ pub fn compare(
         let message = "one picture is radiance (EXR, HDR), the other is encoded for a screen: compare two of a kind";
         return Err(Error::Usage(message.into()));
     }
-    let of_numbers = {
-        let (a, b) = (picture.numbers(), reference.numbers());
-        Metrics {
-            rmse: difference::rmse(&a, &b),
-            relative_rmse: Some(relative_rmse(&a, &b)).filter(|error| error.is_finite()),
-            mae: difference::mae(&a, &b),
-            mean_a: difference::mean(&a),
-            mean_b: difference::mean(&b),
-            psnr: None,
-            ssim: None,
-            flip: 0.0,
+    let (a, b) = (picture.numbers(), reference.numbers());
+    let of_numbers = Metrics {
+        rmse: difference::rmse(&a, &b),
+        relative_rmse: Some(relative_rmse(&a, &b)).filter(|error| error.is_finite()),
+        mae: difference::mae(&a, &b),
+        mean_a: difference::mean(&a),
+        mean_b: difference::mean(&b),
+        psnr: None,
+        ssim: None,
+        flip: 0.0,
+    };
+    let (a, b) = match reference.values() {
+        Values::Encoded => (a, b),
+        // The same exposure for both: a picture that is too bright shall be seen to be.
+        Values::Radiance => {
+            let exposure = reference.exposure();
+            (picture.encoded(exposure), reference.encoded(exposure))
         }
     };
-    let (psnr, ssim) = {
-        // The same exposure for both: a picture that is too bright shall be seen to be.
-        let exposure = reference.exposure();
-        let (a, b) = (picture.encoded(exposure), reference.encoded(exposure));
-        (difference::psnr(&a, &b), ssim::ssim(&a, &b, [w, h]))
-    };
+    let psnr = difference::psnr(&a, &b);
+    let ssim = ssim::ssim(&a, &b, [w, h]);
+    drop((a, b));
     let map = match reference.values() {
         Values::Encoded => flip::ldr(picture.linear(), reference.linear(), [w, h]),
         Values::Radiance => flip::hdr(picture.linear(), reference.linear(), [w, h], progress),

@@ -1,8 +1,9 @@
 //! A picture to compare: linear pixels, and what the numbers of its file meant.
 
 use crate::error::{Error, Result};
-use crate::image::{Image, ToneMap, auto_exposure, srgb};
+use crate::image::{Image, auto_exposure, srgb};
 use crate::math::{Rgb, fun};
+use rayon::prelude::*;
 use std::path::Path;
 
 /// What the numbers of a file are.
@@ -56,7 +57,7 @@ impl Picture {
     /// The numbers of the file.
     pub(super) fn numbers(&self) -> Vec<f64> {
         match self.values {
-            Values::Radiance => channels(&self.linear).map(f64::from).collect(),
+            Values::Radiance => self.channels(f64::from),
             Values::Encoded => self.encoded(0.0),
         }
     }
@@ -72,11 +73,12 @@ impl Picture {
     /// What a screen gets: exposed, clipped, encoded to [0, 1].
     pub(super) fn encoded(&self, exposure: f32) -> Vec<f64> {
         let scale = fun::pow(2.0, exposure);
-        let shown = self.linear.iter().map(|pixel| ToneMap::None.apply(*pixel * scale));
-        shown.flat_map(Rgb::to_array).map(|c| srgb::encode(f64::from(c))).collect()
+        self.channels(|channel| srgb::encode(f64::from((channel * scale).clamp(0.0, 1.0))))
     }
-}
 
-fn channels(pixels: &[Rgb]) -> impl Iterator<Item = f32> {
-    pixels.iter().flat_map(|pixel| pixel.to_array())
+    /// Something of every channel of every pixel.
+    fn channels(&self, f: impl Fn(f32) -> f64 + Sync) -> Vec<f64> {
+        let channels: &[f32] = bytemuck::cast_slice(&self.linear);
+        channels.par_iter().map(|channel| f(*channel)).collect()
+    }
 }

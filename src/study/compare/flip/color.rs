@@ -5,6 +5,7 @@
 use crate::math::{Rgb, fun};
 use crate::study::compare::field::Field;
 use glam::{DMat3, DVec3};
+use rayon::prelude::*;
 
 /// Exponent of colour distances, and how the part of them below `KNEE` of the largest is stretched to `STRETCHED`.
 const EXPONENT: f32 = 0.7;
@@ -42,22 +43,21 @@ impl Space {
             let xyz = |pixel: &Rgb| {
                 self.xyz_from_rgb * DVec3::from_array(pixel.to_array().map(f64::from))
             };
-            Field::new(size, pixels.iter().map(|pixel| component(xyz(pixel))).collect())
+            Field::new(size, pixels.par_iter().map(|pixel| component(xyz(pixel))).collect())
         };
         [plane(|xyz| xyz.y), plane(|xyz| xyz.x - xyz.y), plane(|xyz| xyz.y - xyz.z)]
     }
 
     /// How far the colours of two pictures in the opponent space are from each other, 0 to 1.
     pub(super) fn differences(&self, a: &[Field; 3], b: &[Field; 3], size: [u32; 2]) -> Field {
-        let seen = |planes: &[Field; 3]| -> Vec<DVec3> {
-            let [y, red_green, yellow_blue] = planes.each_ref().map(Field::values);
-            let triples = y.iter().zip(red_green).zip(yellow_blue);
-            let xyz = triples.map(|((y, d), e)| DVec3::new(y + d, *y, y - e));
-            xyz.map(|xyz| self.seen((self.rgb_from_xyz * xyz).clamp(DVec3::ZERO, DVec3::ONE)))
-                .collect()
+        let seen = |planes: &[Field; 3], i: usize| {
+            let [y, red_green, yellow_blue] = planes.each_ref().map(|plane| plane.values()[i]);
+            let xyz = DVec3::new(y + red_green, y, y - yellow_blue);
+            self.seen((self.rgb_from_xyz * xyz).clamp(DVec3::ZERO, DVec3::ONE))
         };
-        let distances = seen(a).into_iter().zip(seen(b)).map(|(a, b)| distance(a, b));
-        Field::new(size, distances.map(|distance| self.stretched(distance)).collect())
+        let difference = |i| self.stretched(distance(seen(a, i), seen(b, i)));
+        let pixels = 0..a[0].values().len();
+        Field::new(size, pixels.into_par_iter().map(difference).collect())
     }
 
     /// CIE L*a*b* of linear sRGB in [0, 1], with colours the weaker the darker they are (Hunt's effect).

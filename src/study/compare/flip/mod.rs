@@ -15,6 +15,7 @@ use crate::image::ToneMap;
 use crate::math::fun::double::{ln, pow};
 use crate::math::{Rgb, fun};
 use color::Space;
+use rayon::prelude::*;
 
 /// More exposures than this tell no more: half a minute of stops.
 const MOST_EXPOSURES: usize = 32;
@@ -23,7 +24,7 @@ const MOST_EXPOSURES: usize = 32;
 pub(super) fn ldr(picture: &[Rgb], reference: &[Rgb], size: [u32; 2]) -> Field {
     let space = Space::new();
     let shown = |pixels: &[Rgb]| -> Vec<Rgb> {
-        pixels.iter().map(|pixel| pixel.map(|c| c.clamp(0.0, 1.0))).collect()
+        pixels.par_iter().map(|pixel| pixel.map(|c| c.clamp(0.0, 1.0))).collect()
     };
     let opponent = |pixels: &[Rgb]| space.opponent(&shown(pixels), size);
     let (picture, reference) = (opponent(picture), opponent(reference));
@@ -50,7 +51,7 @@ pub(super) fn hdr(
     let at = |stops: f64| {
         let scale = fun::pow(2.0, stops as f32);
         let shown = |pixels: &[Rgb]| -> Vec<Rgb> {
-            pixels.iter().map(|pixel| ToneMap::Aces.apply(*pixel * scale)).collect()
+            pixels.par_iter().map(|pixel| ToneMap::Aces.apply(*pixel * scale)).collect()
         };
         ldr(&shown(picture), &shown(reference), size)
     };
