@@ -2,6 +2,7 @@
 
 use super::measure::{Integrand, Measures, Periodogram, convergence, measure, spectrum_limit};
 use crate::error::Result;
+use crate::sampling::hash::{combine, mix64};
 use crate::sampling::voronoi::Domain;
 use crate::sampling::{Strategy, to_f64};
 use serde::Serialize;
@@ -100,28 +101,37 @@ pub struct Fit {
     pub exponent: Option<f64>,
 }
 
-/// Root mean square errors over `seeds` sets of each count that the strategy allows, for every integrand.
+/// Root mean square errors over so many sets, of the seeds after `seed`, of each count that the strategy allows, for every
+/// integrand. Sets that depend on no seed are moved around the torus instead: one of them alone would be good or bad by
+/// luck of its count.
 ///
 /// # Errors
 /// As [`Strategy::points`].
-pub fn slopes(strategy: Strategy, counts: &[u32], seeds: u64) -> Result<Slopes> {
+pub fn slopes(strategy: Strategy, counts: &[u32], seed: u64, sets_of_count: u64) -> Result<Slopes> {
     let counts: Vec<u32> = counts.iter().copied().filter(|n| strategy.allows(*n)).collect();
     let sizes: Vec<usize> = counts.iter().map(|n| *n as usize).collect();
     // Each set serves all integrands.
-    let seeds = if strategy.is_random() { seeds } else { 1 };
+    let one = |n: u32, k: u64| {
+        let mut points = strategy.points(n, seed.wrapping_add(k))?.points;
+        if !strategy.is_random() {
+            let bits = combine(mix64(seed), k);
+            let shift = [bits as u32, (bits >> 32) as u32];
+            points.iter_mut().for_each(|p| *p = [0, 1].map(|c| p[c].wrapping_add(shift[c])));
+        }
+        Ok(points.iter().map(|p| p.map(to_f64)).collect::<Vec<_>>())
+    };
     let mut sets = Vec::new();
     for n in &counts {
-        let of_count: Result<Vec<_>> =
-            (0..seeds).map(|seed| unit_points(strategy, *n, seed)).collect();
+        let of_count: Result<Vec<_>> = (0..sets_of_count).map(|k| one(*n, k)).collect();
         sets.push(of_count?);
     }
-    let found = |n: usize, seed: u64| {
+    let found = |n: usize, k: u64| {
         let place = sizes.iter().position(|size| *size == n).unwrap_or(0);
-        Ok(sets[place][seed as usize].clone())
+        Ok(sets[place][k as usize].clone())
     };
     let mut fits = Vec::new();
     for integrand in Integrand::ALL {
-        let convergence = convergence(found, integrand, &sizes, seeds)?;
+        let convergence = convergence(found, integrand, &sizes, sets_of_count)?;
         let rms_errors = convergence.errors.iter().map(|e| e.rms_error).collect();
         fits.push(Fit { integrand: integrand.name(), rms_errors, exponent: convergence.slope });
     }

@@ -42,8 +42,9 @@ pub fn table<'m>(measures: impl Iterator<Item = &'m Measures>) -> String {
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// Five decimals, and at least three significant digits.
 fn number(value: f64) -> String {
-    format!("{value:.5}")
+    if value == 0.0 || value >= 1e-3 { format!("{value:.5}") } else { format!("{value:.2e}") }
 }
 
 fn optional(value: Option<f64>) -> String {
@@ -51,5 +52,5 @@ fn optional(value: Option<f64>) -> String {
 }
 
 fn bracket(Bracket { low, high }: Bracket) -> String {
-    if low == high { number(low) } else { format!("{low:.4}-{high:.4}") }
+    if low == high { number(low) } else { format!("{}-{}", number(low), number(high)) }
 }

@@ -7,6 +7,7 @@ use crate::lab::measure::{Measures, measure, points_from_text};
 use crate::sampling::Strategy;
 use clap::Args;
 use indicatif::ProgressBar;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// The most points that are measured: half a minute of pairwise sums.
@@ -51,6 +52,12 @@ fn strategies(text: &str) -> std::result::Result<Strategies, String> {
         return Ok(Strategies { list: known().collect(), is_all: true });
     }
     let named = |name: &str| {
+        if name == "all" {
+            return Err("`all` stands alone: it is every sampler".into());
+        }
+        if name == Strategy::ScreenSobol.name() {
+            return Err("sobol-blue-noise shares one set out among pixels: it is for glint render and zoneplate".into());
+        }
         let found = known().find(|strategy| strategy.name() == name);
         let names = known().map(Strategy::name).chain(["all"]);
         found.ok_or_else(|| unknown_name("sampler", name, names))
@@ -71,18 +78,32 @@ impl Sets {
     /// # Errors
     /// A usage error for a strategy named that has none.
     pub(super) fn strategies(&self) -> Result<Vec<Strategy>> {
-        let everything = || strategies("all").map_err(Error::Usage);
-        let wanted = match &self.sampler {
-            Some(wanted) => wanted.clone(),
-            None if self.files.is_empty() => everything()?,
-            None => return Ok(Vec::new()),
-        };
-        let mut list = wanted.list;
+        let mut wanted = self.wanted()?;
         if wanted.is_all {
-            list.retain(|strategy| strategy.allows(self.count));
+            wanted.list.retain(|strategy| strategy.allows(self.count));
         }
-        list.iter().try_for_each(|strategy| strategy.check(self.count))?;
-        Ok(list)
+        wanted.list.iter().try_for_each(|strategy| strategy.check(self.count))?;
+        Ok(wanted.list)
+    }
+
+    fn wanted(&self) -> Result<Strategies> {
+        match &self.sampler {
+            Some(wanted) => Ok(wanted.clone()),
+            None if self.files.is_empty() => strategies("all").map_err(Error::Usage),
+            None => Ok(Strategies { list: Vec::new(), is_all: false }),
+        }
+    }
+
+    /// Says which of all strategies have no set of the wanted size.
+    fn say_what_is_left_out(&self) -> Result<()> {
+        let wanted = self.wanted()?;
+        let refused = wanted.list.iter().filter_map(|strategy| strategy.check(self.count).err());
+        if !self.quiet {
+            for why in refused {
+                let _ = writeln!(std::io::stderr(), "left out: {why}");
+            }
+        }
+        Ok(())
     }
 
     /// Something of every set: of points with the name of their file, and of strategies.
@@ -95,6 +116,7 @@ impl Sets {
         of_strategy: impl Fn(Strategy) -> Result<T>,
     ) -> Result<Vec<T>> {
         let strategies = self.strategies()?;
+        self.say_what_is_left_out()?;
         let bar = self.bar(self.files.len() + strategies.len());
         let mut found = Vec::new();
         for file in &self.files {

@@ -104,8 +104,8 @@ pub struct Convergence {
     /// The errors, in the order of the counts that were asked for.
     pub errors: Vec<RmsError>,
     /// The slope of log(error) over log(n) by least squares: -1/2 for independent points, -3/4 for an edge
-    /// and a jittered grid, -1 for a smooth function and the same. Errors of 0 are left out; `None` when less
-    /// than two different n remain.
+    /// and a jittered grid, -1 for a smooth function and the same. Errors below 1e-9, which are those of
+    /// rounding, are left out; `None` when fewer than three n remain.
     pub slope: Option<f64>,
 }
 
@@ -150,14 +150,14 @@ where
 
 /// The slope of the least-squares line through (ln count, ln error).
 fn slope(errors: &[RmsError]) -> Option<f64> {
-    let seen = errors.iter().filter(|e| e.count > 0.0 && e.rms_error > 0.0);
+    let seen = errors.iter().filter(|e| e.count > 0.0 && e.rms_error > 1e-9);
     let logs: Vec<_> = seen.map(|e| (ln(e.count), ln(e.rms_error))).collect();
     let n = logs.len() as f64;
     let mean_x = sum(logs.iter().map(|l| l.0)) / n;
     let mean_y = sum(logs.iter().map(|l| l.1)) / n;
     let spread = sum(logs.iter().map(|l| (l.0 - mean_x) * (l.0 - mean_x)));
     let shared = sum(logs.iter().map(|l| (l.0 - mean_x) * (l.1 - mean_y)));
-    (spread > 1e-12).then(|| shared / spread)
+    (logs.len() >= 3 && spread > 1e-12).then(|| shared / spread)
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@
 //! between their images measures the error. Strategies that go on for ever (random, Sobol, Halton) are padded: every
 //! dimension has its own scramble and its own order. Of the others a replicate takes sets of points, in a random
 //! order of its own for every pixel and dimension (pmj02 points within each doubling), and randomised so that
-//! what the strategy is about stays: random strata are drawn anew, relaxed sets of one table are rotated around the
-//! torus (R. Cranley and T. N. L. Patterson, SIAM Journal on Numerical Analysis 13(6), 1976), (0,2)-nets
+//! what the strategy is about stays: random strata are drawn anew, relaxed sets of a table are mirrored and rotated around
+//! the torus (R. Cranley and T. N. L. Patterson, SIAM Journal on Numerical Analysis 13(6), 1976), (0,2)-nets
 //! are digitally shifted or scrambled.
 //!
 //! What padding costs: a nested shuffle keeps points 2i and 2i + 1 together, which are in opposite halves of every
@@ -48,8 +48,8 @@ pub(in crate::sampling) enum Source {
     Hammersley,
     /// Sets without a shift: random ones, and the grid.
     Sets(Formula),
-    /// A set that is shifted.
-    Shifted(Arc<[[Fraction; 2]]>),
+    /// So many sets, one after the other, one of which is mirrored and shifted: a single small one would prefer a direction.
+    Shifted(Arc<[[Fraction; 2]]>, u32),
     /// Sets of which each prefix of a power of two is a net.
     Pmj02(Arc<[[Fraction; 2]]>),
 }
@@ -68,18 +68,23 @@ impl Sampler {
         };
         let size = Self::set_size(strategy, samples_per_pixel);
         let count = size.unwrap_or(1) as u32;
-        let table =
-            || strategy.points(count, seed).map(|set| set.points.into()).unwrap_or_default();
+        let table = |sets: u32| {
+            let set = |k| strategy.points(count, seed.wrapping_add(k)).map(|set| set.points);
+            (0..u64::from(sets)).flat_map(|k| set(k).unwrap_or_default()).collect()
+        };
         let source = match strategy {
             Strategy::Random => Source::Random,
             Strategy::Sobol => Source::Sobol,
             Strategy::Halton => Source::Halton,
             Strategy::ScreenSobol => Source::ScreenSobol(count.trailing_zeros()),
-            Strategy::Pmj02 => Source::Pmj02(table()),
+            Strategy::Pmj02 => Source::Pmj02(table(1)),
             Strategy::Hammersley => Source::Hammersley,
             _ => match Formula::new(strategy, count) {
                 Some(formula) => Source::Sets(formula),
-                None => Source::Shifted(table()),
+                None => {
+                    let sets = (Self::MAX_TABLE / count).clamp(1, 64);
+                    Source::Shifted(table(sets), sets)
+                }
             },
         };
         let endless = if strategy == Strategy::Halton { halton::LENGTH } else { 1 << 32 };
@@ -193,10 +198,22 @@ impl Sampler {
                 let x = in_stratum(i, n, 0).wrapping_add(shift);
                 [x, sobol::scramble_reversed(i, scramble).reverse_bits()]
             }
-            Source::Shifted(points) => {
-                let point = points[permute(path.index, points.len() as u32, mix64(seed)) as usize];
+            Source::Shifted(points, sets) => {
+                let (n, choice) = (self.size as u32, mix64(seed ^ 1));
+                let set = ((choice >> 32) * u64::from(*sets)) >> 32;
+                let index =
+                    set as usize * n as usize + permute(path.index, n, mix64(seed)) as usize;
+                let [mut x, mut y] = points[index];
+                // The eight positions of the square.
+                if choice & 1 != 0 {
+                    (x, y) = (y, x);
+                }
+                let mirrors = [1, 2].map(|bit| (choice >> bit & 1) as Fraction);
                 let shift = split(seed);
-                [0, 1].map(|k| point[k].wrapping_add(shift[k]))
+                // All bits of a fraction inverted are its mirror image, but for the last one.
+                let position =
+                    |c: Fraction, k: usize| (c ^ mirrors[k].wrapping_neg()).wrapping_add(shift[k]);
+                [position(x, 0), position(y, 1)]
             }
             Source::Pmj02(points) => {
                 // Prefixes of powers of two are nets: numbers change places within the second half of each.

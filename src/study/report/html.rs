@@ -20,7 +20,7 @@ table { border-collapse: collapse; margin: .6rem 0; font-variant-numeric: tabula
 th, td { padding: .2rem .8rem .2rem 0; text-align: right; border-bottom: 1px solid var(--line); }
 th:first-child, td:first-child { text-align: left; } th { font-weight: 600; vertical-align: bottom; }
 code { overflow-wrap: anywhere; } .better { color: light-dark(#0a7a3f, #5fd494); } .wrong { color: light-dark(#b3261e, #ff8a80); }
-.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(34rem, 1fr)); gap: 0 2rem; }
+.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(34rem, 100%), 1fr)); gap: 0 2rem; }
 svg { width: 100%; height: auto; font: 12px system-ui, sans-serif; } svg text { fill: var(--ink); }
 svg .soft { fill: var(--soft); } svg .whisker { stroke: var(--ink); stroke-width: 1.2; }
 .words th, .words td { text-align: left; vertical-align: top; } .legend span { display: inline-block; width: .8em; height: .8em;

@@ -6,7 +6,7 @@ use crate::lab::exhibit::Exhibit;
 use crate::lab::listing::COLUMNS;
 
 const NOTES: &str = "Drawings: the points in their Voronoi cells, with a tick for each point along both axes; the mean \
-    periodogram (up to ten sets of the strategy; white is no power, black four times that of random points) and its mean \
+    periodogram (up to ten sets of the strategy; paper is no power, full ink four times that of random points, half ink once) and its mean \
     over rings, where the dashed line is the power of random points. Discrepancies: smaller is more even. Distances are \
     on the torus, relative to those of the hexagonal lattice. x and y strata: the part of n strata along each axis that holds \
     a point. t: the quality of the (t, m, 2)-net in base 2, where the points are one. Anisotropy: variance over squared mean of the \
