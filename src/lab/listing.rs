@@ -52,5 +52,5 @@ fn optional(value: Option<f64>) -> String {
 }
 
 fn bracket(Bracket { low, high }: Bracket) -> String {
-    if low == high { number(low) } else { format!("{}-{}", number(low), number(high)) }
+    if low == high { number(low) } else { format!("{}..{}", number(low), number(high)) }
 }
